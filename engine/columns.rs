@@ -12,8 +12,8 @@ pub(crate) fn pieces(rows: usize) -> impl Iterator<Item = Range<usize>> {
     (0..rows).step_by(PIECE).map(move |start| start..(start + PIECE).min(rows))
 }
 
-/// Whether Bevy records the location of changes (feature `track_location`). Pieces cannot record it, so components are
-/// then written one by one.
+/// Whether Bevy records the location of changes (feature `track_location`). Pieces cannot record it, so
+/// components are then written one by one.
 pub(crate) fn is_change_tracked() -> bool {
     MaybeLocation::caller().into_option().is_some()
 }

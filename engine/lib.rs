@@ -1,13 +1,13 @@
 //! Rigid-body physics for [Bevy](https://bevy.org), in two dimensions (`avian2d`) and three (`avian3d`).
 //!
-//! The API is that of Avian: bodies, shapes and settings are components and resources, and each stage of a step is a plugin
-//! that can be configured, disabled or replaced. Inside is a dense, wide and deterministic solver with soft contacts and
-//! substeps.
+//! The API is that of Avian: bodies, shapes and settings are components and resources, and each stage of a
+//! step is a plugin that can be configured, disabled or replaced. Inside is a dense, wide and deterministic
+//! solver with soft contacts and substeps.
 //!
 //! # Quick start
 //!
-//! Add [`PhysicsPlugins`] to the app, give an entity a [`RigidBody`](prelude::RigidBody) and a `Collider`, and it falls.
-//! `PhysicsDebugPlugin` draws what there is as lines. In 3D:
+//! Add [`PhysicsPlugins`] to the app, give an entity a [`RigidBody`](prelude::RigidBody) and a `Collider`,
+//! and it falls. `PhysicsDebugPlugin` draws what there is as lines. In 3D:
 //!
 //! ```ignore
 //! use avian3d::prelude::*;
@@ -44,7 +44,8 @@
 //! }
 //! ```
 //!
-//! Without optimisation physics is slow: 200 boxes take 38 ms a frame, in release 0.3. In the `Cargo.toml` of your workspace:
+//! Without optimisation physics is slow: 200 boxes take 38 ms a frame, in release 0.3. In the `Cargo.toml` of
+//! your workspace:
 //!
 //! ```toml
 //! [profile.dev.package."*"]
@@ -117,8 +118,8 @@
 //!
 //! # Examples
 //!
-//! `cargo run --release -p examples3d --example hello`, or `-p examples2d`. In both: `hello`, `readme`, `forces`,
-//! `collision_events`, `picking`, `ccd`, `chain`, `joint_motors`, `wheels`, `ragdolls`, `player`.
+//! `cargo run --release -p examples3d --example hello`, or `-p examples2d`. In both: `hello`, `readme`,
+//! `forces`, `collision_events`, `picking`, `ccd`, `chain`, `joint_motors`, `wheels`, `ragdolls`, `player`.
 //!
 //! | | 2D | 3D |
 //! |---|---|---|
@@ -129,14 +130,15 @@
 //!
 //! # When it runs
 //!
-//! Physics takes one step per run of the schedule given to [`PhysicsPlugins::new`], by default `FixedPostUpdate`: 64 times a
-//! second at any frame rate. [`schedule::PhysicsSystems`] are its place in that schedule, [`schedule::PhysicsStepSystems`] the
-//! stages of a step, and [`Time<Physics>`](schedule::Physics) is its clock.
+//! Physics takes one step per run of the schedule given to [`PhysicsPlugins::new`], by default
+//! `FixedPostUpdate`: 64 times a second at any frame rate. [`schedule::PhysicsSystems`] are its place in that
+//! schedule, [`schedule::PhysicsStepSystems`] the stages of a step, and [`Time<Physics>`](schedule::Physics)
+//! is its clock.
 //!
 //! # Units
 //!
-//! Metres, seconds, kilograms and radians. If a metre is 100 pixels in your game, set [`PhysicsPlugins::with_length_unit`] to
-//! 100, and [`Gravity`](prelude::Gravity) to 981.
+//! Metres, seconds, kilograms and radians. If a metre is 100 pixels in your game, set
+//! [`PhysicsPlugins::with_length_unit`] to 100, and [`Gravity`](prelude::Gravity) to 981.
 //!
 //! # Features
 //!

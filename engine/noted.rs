@@ -1,8 +1,8 @@
 //! A queue of entities without duplicates.
 //!
-//! Observers fill such queues also while physics is paused, for any time. A queue therefore holds one entry per entity
-//! index: an entity replaces the entry of a despawned one with the same index. So a queue is never longer than the
-//! largest number of entities alive at one time.
+//! Observers fill such queues also while physics is paused, for any time. A queue therefore holds one entry
+//! per entity index: an entity replaces the entry of a despawned one with the same index. So a queue is never
+//! longer than the largest number of entities alive at one time.
 
 use bevy_ecs::entity::Entity;
 
@@ -14,8 +14,8 @@ const SMALL: usize = 64;
 
 /// Entities in the order in which they were first queued, each with the value that was queued last.
 ///
-/// An `EntityIndexSet` does not serve: its hash uses the index only, so the many generations of one index in an app
-/// with paused physics would all collide.
+/// An `EntityIndexSet` does not serve: its hash uses the index only, so the many generations of one index in
+/// an app with paused physics would all collide.
 #[derive(Clone, Debug)]
 pub(crate) struct Noted<T = ()> {
     /// Entries. Removed ones are `None`.

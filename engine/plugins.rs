@@ -81,8 +81,8 @@ impl PhysicsPlugins {
         Self { schedule: schedule.intern(), length_unit: None }
     }
 
-    /// Sets [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): roughly the length of a metre in units
-    /// of the app. An invalid length counts as 1, with a warning.
+    /// Sets [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): roughly the length of a metre
+    /// in units of the app. An invalid length counts as 1, with a warning.
     pub fn with_length_unit(mut self, unit: Scalar) -> Self {
         self.length_unit = Some(unit);
         self

@@ -10,8 +10,8 @@ const MAX_AGE: u32 = Tick::MAX.get();
 
 /// The condition for changes: after a tick.
 ///
-/// A change is new if its age is below a limit. Both are stored with the sign bit flipped: unsigned order then equals
-/// signed order, for which every CPU has SIMD comparisons.
+/// A change is new if its age is below a limit. Both are stored with the sign bit flipped: unsigned order
+/// then equals signed order, for which every CPU has SIMD comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Since {
     now: u32,
@@ -45,7 +45,8 @@ impl Since {
 
     /// Calls `found` with each row at which any of the columns is new.
     ///
-    /// Most rows are not new, so stretches of rows are first tested as a whole, in a loop that the compiler vectorises.
+    /// Most rows are not new, so stretches of rows are first tested as a whole, in a loop that the
+    /// compiler vectorises.
     pub(crate) fn rows<const N: usize>(self, columns: [&[Tick]; N], mut found: impl FnMut(usize)) {
         let count = columns.iter().map(|column| column.len()).min().unwrap_or(0);
         for start in (0..count).step_by(STRETCH) {

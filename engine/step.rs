@@ -1,8 +1,8 @@
 //! The step: every system of the engine in [`PhysicsSchedule`], in the order it runs.
 //!
-//! One list names each stage, its public set, its systems, and the plugin that adds each system. Order and registration
-//! both come from it. A second list names the systems of a substep ([`add_substep_systems_of`]). Disabling a plugin takes
-//! its systems out.
+//! One list names each stage, its public set, its systems, and the plugin that adds each system. Order and
+//! registration both come from it. A second list names the systems of a substep ([`add_substep_systems_of`]).
+//! Disabling a plugin takes its systems out.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel, system::ScheduleSystem};
@@ -72,8 +72,8 @@ use crate::{
     threads::Threads,
 };
 
-/// Makes the stages from the list below. An entry is `Name .place(set) => { Owner: systems, … }`: a stage, its public
-/// set, and its systems by the plugin that adds them.
+/// Makes the stages from the list below. An entry is `Name .place(set) => { Owner: systems, … }`: a stage,
+/// its public set, and its systems by the plugin that adds them.
 macro_rules! stages {
     ($(
         $(#[$doc:meta])*
@@ -223,7 +223,8 @@ stages! {
     Sweep.in_set(SweptCcdSystems) => { Ccd: sweep_bodies }
     /// Applies restitution.
     Restitution.in_set(SolverSystems::Restitution) => { Solver: apply_restitution }
-    /// Adds the displacement in the substeps to the poses. One system, so that no system of the app runs within.
+    /// Adds the displacement in the substeps to the poses. One system, so that no system of the
+    /// app runs within.
     FinishBodies.in_set(SolverSystems::Finalize) => { SolverBodies: note_moved_within.pipe(finish_bodies) }
     /// Writes poses and velocities to components. One system, so that no system of the app runs within.
     Scatter.in_set(SolverSystems::Finalize) => {
@@ -258,15 +259,16 @@ stages! {
     }
     /// Updates [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) components.
     MirrorSleep.in_set(PhysicsStepSystems::Finalize) => { Sleeping: mirror_sleeping }
-    /// Takes [`SolverBody`](crate::dynamics::solver::solver_body::SolverBody) from bodies that fell asleep or left.
+    /// Takes [`SolverBody`](crate::dynamics::solver::solver_body::SolverBody) from bodies that fell
+    /// asleep or left.
     EndLending.in_set(PhysicsStepSystems::Finalize) => { SolverBodies: end_lending }
 }
 
 /// Adds systems of the engine to [`PhysicsSchedule`] or one that replaces it.
 ///
-/// Stages fix the order of the engine's systems, and systems of one stage are chained or share no data. The order
-/// relative to the app's systems in the public sets is open, and that is no error: such a system reads data from before
-/// or after a stage of its set, and its writes take effect where they are read next.
+/// Stages fix the order of the engine's systems, and systems of one stage are chained or share no data. The
+/// order relative to the app's systems in the public sets is open, and that is no error: such a system reads
+/// data from before or after a stage of its set, and its writes take effect where they are read next.
 pub(crate) fn add_systems<M>(
     app: &mut App,
     schedule: impl ScheduleLabel,
@@ -280,8 +282,8 @@ pub(crate) fn add_systems<M>(
     app.add_systems(schedule, systems.ambiguous_with_all());
 }
 
-/// Orders the stages and adds the tables. Every plugin that adds systems to the step calls it; only the first call has
-/// an effect.
+/// Orders the stages and adds the tables. Every plugin that adds systems to the step calls it; only the first
+/// call has an effect.
 pub(crate) fn install(app: &mut App) {
     if app.world().contains_resource::<Bodies>() {
         return;
@@ -334,7 +336,8 @@ pub(crate) fn add_once<P: Plugin>(app: &mut App, shared: P) {
     }
 }
 
-/// Adds the substep systems of an owner to [`SubstepSchedule`] or one that replaces it, each in its public set.
+/// Adds the substep systems of an owner to [`SubstepSchedule`] or one that replaces it, each in
+/// its public set.
 ///
 /// [`SubstepSchedule`]: crate::dynamics::solver::schedule::SubstepSchedule
 pub(crate) fn add_substep_systems_of(owner: Owner, app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
@@ -386,7 +389,8 @@ mod tests {
     use bevy_ecs::schedule::{ApplyDeferred, InternedSystemSet};
     use core::any::TypeId;
 
-    /// Every system of the step runs in a stage or after one, stages run in the order of the list, and none is empty.
+    /// Every system of the step runs in a stage or after one, stages run in the order of the list, and
+    /// none is empty.
     #[test]
     fn every_system_of_the_step_is_in_one_stage_and_stages_run_in_order() {
         let mut app = App::new();

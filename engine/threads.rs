@@ -3,12 +3,12 @@
 use bevy_ecs::prelude::*;
 use kernel::thread_pool::ThreadPool;
 
-/// Minimum number of active contacts for which threads are woken before a step: waking one takes as long as some hundred
-/// contacts.
+/// Minimum number of active contacts for which threads are woken before a step: waking one takes as long as
+/// some hundred contacts.
 const MANY_CONTACTS: usize = 1024;
 
-/// Minimum number of colliders that left their boxes for which waking threads pays: their pairs are searched, and their bodies
-/// swept.
+/// Minimum number of colliders that left their boxes for which waking threads pays: their pairs are searched,
+/// and their bodies swept.
 const MANY_MOVERS: usize = 256;
 
 /// Minimum number of characters for which waking threads pays: planning one takes 10 to 50 µs.
@@ -39,8 +39,8 @@ impl Threads {
         self.wake_if(characters >= MANY_CHARACTERS, setting, workers);
     }
 
-    /// Wakes the threads if there is much to do. `workers` returns the number of workers that `setting` stands for. It is called
-    /// only when the setting changed, since it asks the operating system.
+    /// Wakes the threads if there is much to do. `workers` returns the number of workers that `setting`
+    /// stands for. It is called only when the setting changed, since it asks the operating system.
     fn wake_if(&mut self, many: bool, setting: usize, workers: impl FnOnce() -> usize) {
         // There is no pool before there is much to do for the first time.
         if self.setting != Some(setting) && (many || self.setting.is_some()) {

@@ -1,12 +1,12 @@
 //! Type paths of the engine's types in scenes and other files.
 //!
-//! A reflected type is named by the path of its module. Where a file here is at another path than Avian's module, the
-//! type has Avian's path, so that files written for Avian still name it.
+//! A reflected type is named by the path of its module. Where a file here is at another path than Avian's
+//! module, the type has Avian's path, so that files written for Avian still name it.
 
 /// Implements `TypePath` for a type with another module path than its file.
 ///
-/// The type derives `Reflect` with `#[reflect(type_path = false)]`. The module is given without the crate's name, which
-/// differs between the dimensions.
+/// The type derives `Reflect` with `#[reflect(type_path = false)]`. The module is given without the crate's
+/// name, which differs between the dimensions.
 macro_rules! type_path {
     ($type:ident, $module:literal) => {
         impl bevy_reflect::TypePath for $type {

@@ -2,8 +2,8 @@
 
 use bevy_app::{App, Plugin};
 
-/// Registers the engine's components, resources and nested types for reflection, whether or not the app registers types
-/// automatically.
+/// Registers the engine's components, resources and nested types for reflection, whether or not the app
+/// registers types automatically.
 ///
 /// Scenes, inspectors and remote tools need it; the simulation does not.
 pub struct PhysicsTypeRegistrationPlugin;

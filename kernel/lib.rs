@@ -10,7 +10,7 @@
 //! | [`shape`], [`manifold`] | shapes with boxes and masses; contact points of two shapes |
 //! | [`bvh`] | bounding volume trees, pairs of boxes |
 //! | [`table`] | bodies and colliders by id |
-//! | [`contact`] | contacts by id, the narrow phase, and `Link`, which changes contacts, colours, islands |
+//! | [`contact`] | contacts by id, the narrow phase, and `ContactManager`, which changes contacts, colours, islands |
 //! | [`graph`] | colours and islands of constraints |
 //! | [`solver`] | rows, substeps, poses |
 //! | [`query`] | rays, shape casts, nearest points, overlaps: of two shapes, and of all colliders |

@@ -13,12 +13,14 @@ pub const DT: f64 = 1.0 / 60.0;
 /// Substeps per step that the scenes are measured with.
 pub const SUBSTEPS: u32 = 4;
 
-/// An `App` with the physics plugins and nothing else, ready to be stepped: each [`step`] is one step of `dt` seconds.
+/// An `App` with the physics plugins and nothing else, ready to be stepped: each [`step`] is one step of
+/// `dt` seconds.
 pub fn headless_app(dt: f64, substeps: u32) -> App {
     headless_app_with(dt, substeps, PhysicsPlugins::default())
 }
 
-/// Like [`headless_app`], with other plugins (usually the physics plugins, changed, and what a test adds to them).
+/// Like [`headless_app`], with other plugins (usually the physics plugins, changed, and what a test
+/// adds to them).
 pub fn headless_app_with<M>(dt: f64, substeps: u32, plugins: impl Plugins<M>) -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin));

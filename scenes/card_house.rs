@@ -21,12 +21,13 @@ pub const CARD_FRICTION: f32 = 0.8;
 /// Space between neighbours in a row, in metres.
 const GAP: f32 = 0.002;
 
-/// A house of `storeys` storeys; the lowest has as many pairs of leaning cards. The uppermost pair is watched.
+/// A house of `storeys` storeys; the lowest has as many pairs of leaning cards. The uppermost
+/// pair is watched.
 ///
-/// With lean α, length L and thickness t, a leaning card is L cos α + t sin α high and L sin α + t cos α wide. It
-/// touches its partner with its inner upper corner, t/2 cos α + L/2 sin α from its own middle. A pair is p = 2 (L sin α +
-/// t cos α) wide; the flat cards, a little shorter than p, lie from tip to tip, so that the feet of the pair above stand
-/// over the tips of the pairs below.
+/// With lean α, length L and thickness t, a leaning card is L cos α + t sin α high and L sin α + t cos α
+/// wide. It touches its partner with its inner upper corner, t/2 cos α + L/2 sin α from its own middle. A
+/// pair is p = 2 (L sin α + t cos α) wide; the flat cards, a little shorter than p, lie from tip to tip, so
+/// that the feet of the pair above stand over the tips of the pairs below.
 pub fn card_house(world: &mut World, storeys: u32) {
     set_conditions(world);
     world.insert_resource(DefaultFriction(Friction::new(CARD_FRICTION)));

@@ -318,7 +318,8 @@ pub fn spawn_pyramid_floors(world: &mut World, _rows: u32, width: f32, _pitch: f
     spawn_body(world, RigidBody::Static, block(width, 2.0, width), at(0.0, -1.0, 0.0));
 }
 
-/// Foot and heading of each domino: an Archimedean spiral inwards, r = r₀ − c φ, walked in steps of equal length.
+/// Foot and heading of each domino: an Archimedean spiral inwards, r = r₀ − c φ, walked in steps of
+/// equal length.
 pub fn domino_path(count: u32) -> Vec<(Vec3, f32)> {
     let (mut radius, mut angle) = (8.5, 0.0f32);
     let shrink = 1.8 / core::f32::consts::TAU;

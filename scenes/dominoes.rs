@@ -13,8 +13,8 @@ pub const SIZE: [f32; 3] = [0.15, 1.2, 0.6];
 /// Distance between neighbours in metres, middle to middle.
 pub const PITCH: f32 = 0.6;
 
-/// `count` dominoes in a line (2D) or along a spiral (3D). The first leans far enough to fall onto the second. Returns
-/// them in that order.
+/// `count` dominoes in a line (2D) or along a spiral (3D). The first leans far enough to fall onto the
+/// second. Returns them in that order.
 pub fn dominoes(world: &mut World, count: u32) -> Vec<Entity> {
     set_conditions(world);
     dim::spawn_domino_floor(world, count);

@@ -1,9 +1,9 @@
 //! Scenes for tests, benchmarks and the testbed.
 //!
-//! One source makes two packages, `scenes2d` and `scenes3d`. [`all`] lists the scenes with their standard parameters;
-//! the modules hold the functions behind them, with free parameters. Every scene uses the engine's public components
-//! only, sets its own gravity and friction, and is the same in every run: random choices come from [`Rng`], angles from
-//! [`sin_cos`].
+//! One source makes two packages, `scenes2d` and `scenes3d`. [`all`] lists the scenes with their standard
+//! parameters; the modules hold the functions behind them, with free parameters. Every scene uses the
+//! engine's public components only, sets its own gravity and friction, and is the same in every run: random
+//! choices come from [`Rng`], angles from [`sin_cos`].
 
 pub mod app;
 pub mod belts;

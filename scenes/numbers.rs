@@ -23,8 +23,8 @@ impl Rng {
         xored.rotate_right((old >> 59) as u32)
     }
 
-    /// A number in `low..high`. The 24 random bits fit the mantissa, so no rounding reaches `high` for spans that are
-    /// not tiny beside `low`.
+    /// A number in `low..high`. The 24 random bits fit the mantissa, so no rounding reaches `high` for spans
+    /// that are not tiny beside `low`.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         let unit = (self.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0);
         low + (high - low) * unit
@@ -36,8 +36,9 @@ impl Rng {
     }
 }
 
-/// Sine and cosine of an angle in radians, by Taylor series in `f64`: only sums and products, hence the same bits
-/// wherever it runs, unlike the platform's functions. Exact to `f32` for angles up to some thousand turns.
+/// Sine and cosine of an angle in radians, by Taylor series in `f64`: only sums and products, hence the
+/// same bits wherever it runs, unlike the platform's functions. Exact to `f32` for angles up to some
+/// thousand turns.
 pub fn sin_cos(angle: f32) -> (f32, f32) {
     let (sin, cos) = sin_cos_f64(f64::from(angle));
     (sin as f32, cos as f32)

@@ -7,8 +7,8 @@ use bevy_math::Vec3;
 use crate::dim;
 use crate::scene::{Watched, at, set_conditions, spawn_block, spawn_body};
 
-/// Stacks one pyramid of touching unit boxes, `base` boxes wide at the bottom, its middle on `foot`. Its bodies do not
-/// sleep; the topmost one is watched. Returns the boxes, bottom row first.
+/// Stacks one pyramid of touching unit boxes, `base` boxes wide at the bottom, its middle on `foot`. Its
+/// bodies do not sleep; the topmost one is watched. Returns the boxes, bottom row first.
 pub fn stack(world: &mut World, base: u32, foot: Vec3) -> Vec<Entity> {
     let mut boxes = Vec::new();
     for row in 0..base {
@@ -36,8 +36,8 @@ pub fn large(world: &mut World, base: u32) -> Vec<Entity> {
     stack(world, base, Vec3::ZERO)
 }
 
-/// `rows` × `columns` pyramids of base `base`: on floors above each other in 2D, behind each other on one floor in 3D;
-/// as Box2D's benchmark `many_pyramids` with 20 × 20 × 10 and Box3D's with 14 × 14 × 10.
+/// `rows` × `columns` pyramids of base `base`: on floors above each other in 2D, behind each other on one
+/// floor in 3D; as Box2D's benchmark `many_pyramids` with 20 × 20 × 10 and Box3D's with 14 × 14 × 10.
 pub fn many(world: &mut World, rows: u32, columns: u32, base: u32) {
     set_conditions(world);
     let pitch = base as f32 + 1.0;

@@ -1,4 +1,5 @@
-//! Colliders scaled by their `Transform`: a level of one block, stretched to ramps, and pieces that are scaled unevenly.
+//! Colliders scaled by their `Transform`: a level of one block, stretched to ramps, and pieces that are
+//! scaled unevenly.
 
 use avian::prelude::*;
 use bevy_ecs::prelude::*;

@@ -39,8 +39,8 @@ pub const RIDERS: [(Rider, f32); 8] = [
     (Rider::Box, 0.8),
 ];
 
-/// One ramp for each of [`RIDERS`], going down to the left. The boxes that should stick are watched. Returns the riders
-/// in that order.
+/// One ramp for each of [`RIDERS`], going down to the left. The boxes that should stick are watched. Returns
+/// the riders in that order.
 pub fn slopes(world: &mut World) -> Vec<Entity> {
     set_conditions(world);
     RIDERS
@@ -50,8 +50,8 @@ pub fn slopes(world: &mut World) -> Vec<Entity> {
         .collect()
 }
 
-/// One ramp with its middle at `middle`, rising to the right by `angle`, and one body near its upper end with a
-/// friction. Returns the body.
+/// One ramp with its middle at `middle`, rising to the right by `angle`, and one body near its upper end with
+/// a friction. Returns the body.
 pub fn spawn_lane(world: &mut World, rider: Rider, friction: f32, angle: f32, middle: Vec3) -> Entity {
     let (sin, cos) = sin_cos(angle);
     let rotation = turned(angle);

@@ -10,8 +10,8 @@ use crate::scene::{Glass, at, set_conditions, spawn_body};
 /// The drum's turning speed in rad/s: 25 degrees.
 pub const SPEED: f32 = 0.436_332_3;
 
-/// A square drum around (0, 10) with `side` × `side` boxes in it (times [`dim::TUMBLER_DEPTH`] in 3D). Returns the
-/// drum.
+/// A square drum around (0, 10) with `side` × `side` boxes in it (times [`dim::TUMBLER_DEPTH`] in 3D).
+/// Returns the drum.
 pub fn tumbler(world: &mut World, side: u32) -> Entity {
     set_conditions(world);
     let depth = dim::TUMBLER_SPACE;

@@ -1,7 +1,8 @@
 //! Circles of imports between the files of a crate.
 //!
-//! An arrow goes from a file to the one that *defines* a name it uses. Re-exports are followed and are no arrows
-//! themselves, so a module may re-export what its files define. Of twin files only that of one dimension is read.
+//! An arrow goes from a file to the one that *defines* a name it uses. Re-exports are followed and are no
+//! arrows themselves, so a module may re-export what its files define. Of twin files only that of one
+//! dimension is read.
 
 use super::source_text::{Source, group, is_word};
 use std::collections::{BTreeMap, BTreeSet};
@@ -141,8 +142,8 @@ pub(super) fn circles(arrows: &Arrows) -> Vec<String> {
     found
 }
 
-/// Reads one module: its statements, and the modules inside of it. `found` receives the modules in files of their own,
-/// with the file of the dimension if one is given.
+/// Reads one module: its statements, and the modules inside of it. `found` receives the modules in files of
+/// their own, with the file of the dimension if one is given.
 fn parse(
     source: &Source,
     range: std::ops::Range<usize>,

@@ -169,8 +169,8 @@ fn an_observer_may_despawn_what_was_hit() {
     assert!(!app.world().resource::<Seen>().messages.is_empty());
 }
 
-/// A hull of random corners that falls without turning onto a floor of tiles. Each first blow has the speed of the fall,
-/// and each pair reports a blow once.
+/// A hull of random corners that falls without turning onto a floor of tiles. Each first blow has the speed
+/// of the fall, and each pair reports a blow once.
 #[test]
 fn issue_a_hull_that_struck_tiles_was_told_of_blows_with_other_speeds() {
     let mut seed = 1_u32;

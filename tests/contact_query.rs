@@ -79,8 +79,8 @@ fn outside(part: &(Vec<Vector>, Scalar), point: Vector, directions: &[Vector]) -
     directions.iter().map(|n| point.dot(*n) - reach(part, *n)).fold(Scalar::NEG_INFINITY, Scalar::max)
 }
 
-/// The gap between two parts along a unit vector: no more than their distance, and equal to it in the direction of the
-/// nearest points.
+/// The gap between two parts along a unit vector: no more than their distance, and equal to it in the
+/// direction of the nearest points.
 fn gap(a: &(Vec<Vector>, Scalar), b: &(Vec<Vector>, Scalar), n: Vector) -> Scalar {
     -reach(b, -n) - reach(a, n)
 }
@@ -229,8 +229,8 @@ fn values_that_are_not_finite_are_no_hits() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2_000))]
 
-    /// A distance is proved by two points of the shapes that are so far apart, and by a direction in which all of them is
-    /// so far apart. Both come with the contact.
+    /// A distance is proved by two points of the shapes that are so far apart, and by a direction in which
+    /// all of them is so far apart. Both come with the contact.
     #[test]
     fn distances_are_proved_by_points_and_directions(
         (i, j) in (0..5_usize, 0..5_usize),

@@ -1,5 +1,5 @@
-//! Names, paths, signatures, derives and defaults that apps and other crates rely on: those of Avian 0.7 that exist
-//! here. Most is proven by compiling.
+//! Names, paths, signatures, derives and defaults that apps and other crates rely on: those of Avian 0.7 that
+//! exist here. Most is proven by compiling.
 
 use std::{fmt::Debug, hash::Hash, ops};
 

@@ -293,7 +293,8 @@ fn casts_contacts_islands_and_trees_are_drawn() {
     }
 }
 
-/// A hinge at a post draws the ways from the bodies to the anchor, the gap between the anchors, and its range.
+/// A hinge at a post draws the ways from the bodies to the anchor, the gap between the anchors,
+/// and its range.
 #[test]
 fn joints_are_drawn_with_their_anchors_gap_and_limits() {
     let mut app = app(PhysicsGizmos::joints(Some(GREEN), Some(RED)));

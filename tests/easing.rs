@@ -1,6 +1,7 @@
 //! What the app writes to the `Transform` of an eased body between two ticks, and what is drawn.
 //!
-//! Twins without easing show where physics should be, and eased twins that nothing writes to show what should be drawn.
+//! Twins without easing show where physics should be, and eased twins that nothing writes to show what
+//! should be drawn.
 
 use avian::{math::Vector, prelude::*};
 use bevy_app::prelude::*;
@@ -514,7 +515,8 @@ fn what_the_app_moves_in_fixed_ticks_is_eased_too() {
     assert!(last > 60.0);
 }
 
-/// A parent with a thrown body below, and the same body without a parent. What is drawn differs by less than `tolerance`.
+/// A parent with a thrown body below, and the same body without a parent. What is drawn differs by less
+/// than `tolerance`.
 fn check_below(rate: u32, parent: impl Bundle, tolerance: f32) {
     let mut app = app(rate);
     let world = app.world_mut();

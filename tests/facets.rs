@@ -14,8 +14,8 @@ use core::time::Duration;
 use super::facets_dim::{ground, sides};
 
 const G: Scalar = 10.0;
-/// Half sizes of a box so flat that friction hardly shifts its weight, and so short that it hardly matters which of its points
-/// carry the weight across a border.
+/// Half sizes of a box so flat that friction hardly shifts its weight, and so short that it hardly matters
+/// which of its points carry the weight across a border.
 const LENGTH: Scalar = 0.1;
 const HEIGHT: Scalar = 0.02;
 

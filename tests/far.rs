@@ -21,8 +21,8 @@ fn app(origin: Vector, floor: Collider) -> App {
     app
 }
 
-/// Drops `bodies` and runs ten seconds. Returns positions relative to `origin`, speeds, and the number of sleeping
-/// bodies.
+/// Drops `bodies` and runs ten seconds. Returns positions relative to `origin`, speeds, and the number of
+/// sleeping bodies.
 fn drop_all(origin: Vector, floor: Collider, bodies: &[(Collider, Vector)]) -> (Vec<Vector>, f64, usize) {
     let mut app = app(origin, floor);
     let world = app.world_mut();

@@ -280,7 +280,8 @@ fn on_other_bodies_it_has_no_effect_and_may_be_changed_at_any_time() {
             (5.0, LinearVelocity::ZERO)
         );
     }
-    // A moving body that gets the component stops at its transform. Without it the body obeys its velocity again.
+    // A moving body that gets the component stops at its transform. Without it the body obeys its
+    // velocity again.
     app.world_mut().entity_mut(moving).insert(FollowTransform);
     (0..4).for_each(|_| app.update());
     assert_eq!(get::<LinearVelocity>(&app, moving), LinearVelocity::ZERO);

@@ -177,7 +177,8 @@ fn app_with_scenes() -> App {
     app
 }
 
-/// Compares the collider of each node with its mesh, triangle by triangle, in the world. Returns their number.
+/// Compares the collider of each node with its mesh, triangle by triangle, in the world. Returns
+/// their number.
 pub fn compare(app: &mut App) -> usize {
     type Solid = (&'static Collider, &'static Position, &'static Rotation);
     let mut nodes = app.world_mut().query::<(&Name, &MeshComponent, &GlobalTransform, Option<Solid>)>();

@@ -1,5 +1,5 @@
-//! Bodies and colliders are spawned, despawned and changed in random order, also by observers. Feature `validate`,
-//! which is on in tests, compares all tables with the world in every step.
+//! Bodies and colliders are spawned, despawned and changed in random order, also by observers. Feature
+//! `validate`, which is on in tests, compares all tables with the world in every step.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{
@@ -291,7 +291,8 @@ fn check(app: &mut App, falling: &[(Entity, Scalar)], step: u32) {
     }
 }
 
-/// Worlds per run, and with `AVIAN_LONG_TESTS=1`. Many combinations of components occur, so that a long-lived world gets slow.
+/// Worlds per run, and with `AVIAN_LONG_TESTS=1`. Many combinations of components occur, so that a long-lived
+/// world gets slow.
 const WORLDS: [u32; 2] = [10, 25];
 
 fn run(seed: u64, observers: bool) {
@@ -393,7 +394,8 @@ fn issue_what_was_spawned_disabled_never_took_part() {
     assert!(height(&app, body) < 1.5);
 }
 
-/// Searches for changed components do not see disabled entities, so changes made then have to be found afterwards.
+/// Searches for changed components do not see disabled entities, so changes made then have to be
+/// found afterwards.
 #[test]
 fn issue_what_moved_while_disabled_came_back_where_it_had_been() {
     let mut app = app();

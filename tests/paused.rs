@@ -1,5 +1,5 @@
-//! Spawning, despawning and changes while physics is paused: afterwards the world is as if it had been spawned in its
-//! final state.
+//! Spawning, despawning and changes while physics is paused: afterwards the world is as if it had been
+//! spawned in its final state.
 
 use avian::{
     math::{Scalar, Vector},

@@ -271,7 +271,8 @@ fn child_colliders_are_picked() {
     assert_eq!(entities(&mut app), [child]);
 }
 
-/// Cameras that are inactive, gone or bad, rays that are not finite, and apps without Bevy's picking or physics.
+/// Cameras that are inactive, gone or bad, rays that are not finite, and apps without Bevy's
+/// picking or physics.
 #[test]
 fn bad_rays_pick_nothing() {
     let mut app = app();

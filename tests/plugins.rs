@@ -87,9 +87,9 @@ fn easing_is_left_out_while_there_is_nothing_to_ease() {
     }
 }
 
-/// The state of a few bodies after three seconds: a ball that falls on a floor from 2 m, a body held at a height, one
-/// with a maximum speed of 1 m/s, one that drifts at 1 m/s without gravity, and one with its collider a metre above it,
-/// on a child.
+/// The state of a few bodies after three seconds: a ball that falls on a floor from 2 m, a body held at a
+/// height, one with a maximum speed of 1 m/s, one that drifts at 1 m/s without gravity, and one with its
+/// collider a metre above it, on a child.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Seen {
     ball: Scalar,

@@ -479,7 +479,8 @@ fn defaults_are_avians() {
     assert_eq!(SpatialQueryFilter::default(), SpatialQueryFilter::from_mask(LayerMask::ALL));
 }
 
-/// Casters with numbers that are not finite, without a place, or on what is despawned: no panic, and others are updated.
+/// Casters with numbers that are not finite, without a place, or on what is despawned: no panic, and
+/// others are updated.
 #[test]
 fn no_caster_disturbs_the_others() {
     let mut app = app();

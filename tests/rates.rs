@@ -1,7 +1,8 @@
-//! Changes in `Update` have the same effect as changes in the tick, at any frame rate and while time is paused.
+//! Changes in `Update` have the same effect as changes in the tick, at any frame rate and while
+//! time is paused.
 //!
-//! Every change is made once in `Update`, between two ticks, and once in the tick, before physics. All bodies must have
-//! the same bits after every step, and other bits than without the change.
+//! Every change is made once in `Update`, between two ticks, and once in the tick, before physics. All bodies
+//! must have the same bits after every step, and other bits than without the change.
 
 use avian::{
     dynamics::integrator::{CustomPositionIntegration, CustomVelocityIntegration},

@@ -1,4 +1,5 @@
-//! Reflection: every public type of the engine that derives `Reflect` is registered, and resources and components can be used through it.
+//! Reflection: every public type of the engine that derives `Reflect` is registered, and resources and
+//! components can be used through it.
 
 use avian::{PhysicsTypeRegistrationPlugin, prelude::*};
 use bevy_app::App;
@@ -43,7 +44,8 @@ fn components_and_resources_reflect_as_such() {
     assert!(registry.get_type_data::<ReflectComponent>(TypeId::of::<SpeculativeMargin>()).is_some());
 }
 
-/// Names of the public types in the engine's sources whose derives include `Reflect`, with the data they should reflect.
+/// Names of the public types in the engine's sources whose derives include `Reflect`, with the data they
+/// should reflect.
 fn reflected_types(folder: &Path, found: &mut Vec<Reflected>) {
     // The other dimension is not part of this package.
     let other = if env!("CARGO_PKG_NAME").contains("2d") { "dim3" } else { "dim2" };

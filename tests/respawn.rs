@@ -1,5 +1,5 @@
-//! Transforms that the app sets when a step is done: in observers of its events, in its last sets, and before the
-//! write-back. They are newer than the step, and count.
+//! Transforms that the app sets when a step is done: in observers of its events, in its last sets, and before
+//! the write-back. They are newer than the step, and count.
 
 use avian::{
     math::{Scalar, Vector},

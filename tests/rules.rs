@@ -1,5 +1,5 @@
-//! Rules of the source tree that no compiler checks: where code may depend on the dimension, the direction of imports,
-//! and functions that differ between machines.
+//! Rules of the source tree that no compiler checks: where code may depend on the dimension, the direction of
+//! imports, and functions that differ between machines.
 
 mod circles;
 mod source_text;
@@ -80,7 +80,8 @@ const UNSTABLE_FLOATS: [&str; 22] = [
     ".to_radians()",
 ];
 
-/// Other sources of results that depend on more than the input: hash order, clocks, approximations, fused products.
+/// Other sources of results that depend on more than the input: hash order, clocks, approximations,
+/// fused products.
 const UNSTABLE_REST: [&str; 7] =
     ["HashMap", "HashSet", "Instant::now", "SystemTime", "_mm_rcp", "_mm_rsqrt", "fmadd"];
 
@@ -183,8 +184,8 @@ fn the_engine_calls_no_float_function_that_differs_between_machines() {
     assert_none(&find_words(&sources(&["engine"]), &UNSTABLE_FLOATS), "the same input gives the same bits");
 }
 
-/// The operations of eight lanes need AVX2, which no signature can ask for: the type stays in the crate, and only the files
-/// whose entry points hold an `Avx2` name it.
+/// The operations of eight lanes need AVX2, which no signature can ask for: the type stays in the crate, and
+/// only the files whose entry points hold an `Avx2` name it.
 #[test]
 fn eight_lanes_stay_behind_their_entry_points() {
     let kernel = sources(&["kernel"]);
@@ -193,7 +194,7 @@ fn eight_lanes_stay_behind_their_entry_points() {
         "math/mod.rs",
         "math/lane_avx.rs",
         "math/entry.rs",
-        "solver/batches.rs",
+        "solver/all_rows.rs",
         "solver/compression.rs",
         "solver/integrate.rs",
         "solver/joint/tree.rs",

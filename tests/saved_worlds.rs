@@ -76,8 +76,8 @@ fn read(app: &App, text: &str) -> Result<DynamicWorld, String> {
     seed.deserialize(&mut text).map_err(|error| error.to_string())
 }
 
-/// The entities in the order of those they were saved from. Bevy stores them in an order of its own; with `sorts` they are
-/// spawned in that of the level, which is that of the engine's ids.
+/// The entities in the order of those they were saved from. Bevy stores them in an order of its own; with
+/// `sorts` they are spawned in that of the level, which is that of the engine's ids.
 fn load(app: &mut App, text: &str, saved: &[Entity], sorts: bool) -> Vec<Entity> {
     let mut level = read(app, text).expect("was stored");
     if sorts {

@@ -1,4 +1,5 @@
-//! The state of a body or collider right after it is spawned, attached or detached, before any system has run.
+//! The state of a body or collider right after it is spawned, attached or detached, before any
+//! system has run.
 
 use avian::{
     math::{Scalar, Vector},

@@ -1,5 +1,5 @@
-//! Feature `serialize`: every public type, and a whole world, is read back from a file unchanged, by serde and by
-//! reflection.
+//! Feature `serialize`: every public type, and a whole world, is read back from a file unchanged, by serde
+//! and by reflection.
 
 use avian::{
     PhysicsTypeRegistrationPlugin,
@@ -36,8 +36,8 @@ use core::{fmt::Debug, time::Duration};
 use scenes::dim::{ball, block, spin};
 use serde::{Serialize, de::DeserializeOwned, de::DeserializeSeed};
 
-/// Types that are not stored: measurements of a step and the state within it, ticks and ids of a world, and settings of what is
-/// shown.
+/// Types that are not stored: measurements of a step and the state within it, ticks and ids of a world, and
+/// settings of what is shown.
 const NOT_STORED: [&str; 24] = [
     "SolverBody",
     "SolverBodyFlags",

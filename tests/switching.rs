@@ -1,5 +1,5 @@
-//! What apps and crates written for Avian 0.7 rely on, beyond names: when plugins and schedules exist, and what counts in
-//! which step. `docs/switching.md` lists the points.
+//! What apps and crates written for Avian 0.7 rely on, beyond names: when plugins and schedules exist, and
+//! what counts in which step. `docs/switching.md` lists the points.
 
 use avian::{
     collision::narrow_phase::CollisionEventSystems,
@@ -228,7 +228,8 @@ fn a_transform_written_before_physics_counts_in_the_same_step() {
 #[derive(Resource, Default)]
 struct Runs(u32);
 
-/// Sets of the step are sets of `PhysicsSchedule` only. In another schedule they order nothing, and the system runs.
+/// Sets of the step are sets of `PhysicsSchedule` only. In another schedule they order nothing, and
+/// the system runs.
 #[test]
 fn a_set_of_the_step_does_no_harm_in_another_schedule() {
     let mut app = App::new();

@@ -1,10 +1,11 @@
-//! Type paths in files: scenes, glTF extras and exports of editors name a reflected type by its module path in Avian.
+//! Type paths in files: scenes, glTF extras and exports of editors name a reflected type by its module
+//! path in Avian.
 
 use super::reflection::registered;
 use std::collections::BTreeMap;
 
-/// Every reflected type of Avian 0.7 without type parameters, by its path within the crate. Types that this engine does
-/// not have yet are listed as well, so that they get the right path from the start.
+/// Every reflected type of Avian 0.7 without type parameters, by its path within the crate. Types that this
+/// engine does not have yet are listed as well, so that they get the right path from the start.
 const PATHS: &str = "
 character_controller::move_and_slide::DepenetrationConfig
 character_controller::move_and_slide::MoveAndSlideConfig

@@ -1,4 +1,5 @@
-//! Characters as games drive them: boxes that cannot turn, with a velocity into a wall of tiles that is set in each tick.
+//! Characters as games drive them: boxes that cannot turn, with a velocity into a wall of tiles that is set
+//! in each tick.
 #![allow(clippy::unnecessary_cast, reason = "Scalar may be f32 or f64")]
 
 use avian::{
@@ -29,7 +30,8 @@ fn walk(mut walkers: Query<(&Walks, &mut LinearVelocity)>) {
     walkers.iter_mut().for_each(|(walks, mut velocity)| velocity.x = walks.0);
 }
 
-/// The heights of two boxes, over that of their start, after some seconds: of one that is driven into a wall, and of one beside it.
+/// The heights of two boxes, over that of their start, after some seconds: of one that is driven into a wall,
+/// and of one beside it.
 fn fall(rate: f64, speed: Scalar, upward: Scalar, seconds: f64) -> [Scalar; 2] {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin, PhysicsPlugins::default()));
@@ -50,7 +52,8 @@ fn fall(rate: f64, speed: Scalar, upward: Scalar, seconds: f64) -> [Scalar; 2] {
     bodies.map(|body| app.world().get::<Position>(body).expect("it has one").y - 0.3)
 }
 
-/// They stopped at every seam: a fall of 20 m took up to 6.5 times as long, and a jump ended at a tenth of its height.
+/// They stopped at every seam: a fall of 20 m took up to 6.5 times as long, and a jump ended at a tenth
+/// of its height.
 #[test]
 fn characters_fall_and_jump_along_walls_of_tiles_as_beside_them() {
     for rate in [30.0, 60.0, 144.0] {

@@ -58,8 +58,8 @@ assembly | awk '
     BEGIN { printf "%-12s %9s %5s %12s %6s %11s %9s %7s\n", "entry point", "functions", "loops", "instructions", "calls", "full width", "narrower", "scalar" }
     /^[0-9a-f]+ <.*>:$/ {
         finish(); clear(); name = ""
-        if (match($0, /(f32|F32x4|F32x8) as [a-z0-9_]*::math::entry::Entry>::enter(::avx2)?::<[a-z0-9_]*::solver::(contact_batch|joint::batch)::RunJob</)) {
-            kind_of_row = /joint::batch/ ? "::joints" : "::sweep"
+        if (match($0, /(f32|F32x4|F32x8) as [a-z0-9_]*::math::entry::Entry>::enter(::avx2)?::<[a-z0-9_]*::solver::(contact_batch|joint::joint_batch)::RunJob</)) {
+            kind_of_row = /joint::joint_batch/ ? "::joints" : "::sweep"
             name = substr($0, RSTART); sub(/ as .*$/, kind_of_row, name)
         }
         if (/::recycle::RecycleBatch>?::evaluate_at::avx2(::<.*>)?>:$/) name = "F32x8::recycle"

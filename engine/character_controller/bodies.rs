@@ -13,10 +13,12 @@ use crate::{
     physics_transform::{Position, Rotation, pose_from_kernel, world_pose},
 };
 
-/// The load in N, of a mass under gravity, that a body bears after another step, in which it gave way by a speed.
+/// The load in N, of a mass under gravity, that a body bears after another step, in which it gave
+/// way by a speed.
 ///
-/// How much it bears is not known, and the whole weight at once would throw a light limb that lies on nothing. So each step adds what
-/// accelerates the mass and the body together by gravity, at least `growth` times the load, and takes off what made the body give way.
+/// How much it bears is not known, and the whole weight at once would throw a light limb that lies on
+/// nothing. So each step adds what accelerates the mass and the body together by gravity, at least `growth`
+/// times the load, and takes off what made the body give way.
 pub(super) fn borne(
     load: Scalar,
     yielded: Scalar,
@@ -83,7 +85,8 @@ impl BodiesAround<'_, '_> {
         })
     }
 
-    /// The inverse of the mass that a body has at a point along a direction, in 1/kg: zero for those that impulses do not move.
+    /// The inverse of the mass that a body has at a point along a direction, in 1/kg: zero for those that
+    /// impulses do not move.
     pub(super) fn inverse_mass_at(&self, body: Entity, point: Vector, direction: Vector) -> Scalar {
         let Ok(state) = self.states.get(body) else { return 0.0 };
         let center = state.position.0 + *state.rotation * state.center_of_mass.0;
@@ -124,7 +127,8 @@ impl Motion {
         self.velocity != Vector::ZERO || self.spin != AngularVelocity::ZERO.0
     }
 
-    /// The greatest distance by which a point at most as far from the body's centre as `point` moves in the step.
+    /// The greatest distance by which a point at most as far from the body's centre as `point`
+    /// moves in the step.
     pub(super) fn reach_at(&self, point: Vector) -> Scalar {
         let spin: Scalar = angular_to_kernel(self.spin).length_squared().sqrt().adjust_precision();
         (self.velocity.length() + spin * (point - self.center).length()) * self.time

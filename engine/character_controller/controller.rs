@@ -15,9 +15,9 @@ use crate::{
 
 /// A character that walks: on floors, slopes and stairs, on platforms that move and turn.
 ///
-/// Add it to an entity with a capsule, a cylinder, a box or another convex [`Collider`](crate::prelude::Collider). The body is
-/// kinematic. Each step reads [`CharacterInput`], and sets the velocity of the body so that the step moves it there. What
-/// became of it is in [`CharacterState`].
+/// Add it to an entity with a capsule, a cylinder, a box or another convex
+/// [`Collider`](crate::prelude::Collider). The body is kinematic. Each step reads [`CharacterInput`], and
+/// sets the velocity of the body so that the step moves it there. What became of it is in [`CharacterState`].
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -51,7 +51,8 @@ use crate::{
 #[reflect(Debug, Component, Default, PartialEq)]
 #[require(RigidBody::Kinematic, CharacterInput, CharacterState)]
 pub struct CharacterController {
-    /// The direction against which the character stands. It may change at any time, as on a planet. +y by default.
+    /// The direction against which the character stands. It may change at any time, as on a planet.
+    /// +y by default.
     pub up: Dir,
     /// The steepest slope that it walks on, in radians. 50 degrees by default.
     pub max_slope: Scalar,
@@ -60,19 +61,20 @@ pub struct CharacterController {
     pub step_height: Scalar,
     /// The way that must be free above a step for it to be climbed, in metres. 0.1 by default.
     pub step_depth: Scalar,
-    /// How far below its feet the floor may drop away without the character leaving it, in metres. 0.4 by default. Slopes
-    /// up to [`max_slope`](Self::max_slope) are followed at any speed.
+    /// How far below its feet the floor may drop away without the character leaving it, in metres. 0.4 by
+    /// default. Slopes up to [`max_slope`](Self::max_slope) are followed at any speed.
     pub snap_distance: Scalar,
     /// The distance kept from all colliders, in metres. 0.01 by default.
     pub skin_width: Scalar,
-    /// Its mass in kg, by which it pushes and weighs on dynamic bodies, and slides on light ones that jerk. 70 by default.
+    /// Its mass in kg, by which it pushes and weighs on dynamic bodies, and slides on light ones that jerk.
+    /// 70 by default.
     pub mass: Scalar,
     /// The largest force by which it pushes dynamic bodies, in N. 500 by default, 0 for none.
     pub max_push_force: Scalar,
     /// What the character collides with. Its own colliders need not be excluded.
     pub filter: SpatialQueryFilter,
-    /// The layers of its friends: other characters that do not stop it. Those that overlap yield to each other, each by half
-    /// of the way. None by default.
+    /// The layers of its friends: other characters that do not stop it. Those that overlap yield to each
+    /// other, each by half of the way. None by default.
     pub friends: LayerMask,
     /// The speed at which it yields to friends, in m/s. Slower than half of its own speed, or
     /// friends push each other along instead of passing. 0.5 by default.
@@ -104,11 +106,11 @@ impl Default for CharacterController {
 #[reflect(Debug, Component, Default, PartialEq)]
 pub struct CharacterInput {
     /// The velocity at which it is to walk, relative to the ground, in m/s. The part along
-    /// [`up`](CharacterController::up) has no effect: slopes and stairs are walked at this horizontal speed. In the air it is
-    /// relative to the ground that was left.
+    /// [`up`](CharacterController::up) has no effect: slopes and stairs are walked at this horizontal speed.
+    /// In the air it is relative to the ground that was left.
     pub velocity: Vector,
-    /// The speed at which it is to leave the ground, in m/s; 0 for none. The next step sets it back to 0, also if there is no
-    /// ground to leave.
+    /// The speed at which it is to leave the ground, in m/s; 0 for none. The next step sets it back to 0,
+    /// also if there is no ground to leave.
     pub jump: Scalar,
     /// Whether it is to crouch, if it has a [`CharacterCrouch`](super::crouch::CharacterCrouch).
     pub crouch: bool,
@@ -146,23 +148,26 @@ pub struct CharacterState {
     pub ground_entity: Option<Entity>,
     /// The point there, in the world, in metres.
     pub ground_point: Vector,
-    /// The outward unit normal there: that of the face beside, if the point is at an edge that can be stood on.
+    /// The outward unit normal there: that of the face beside, if the point is at an edge that
+    /// can be stood on.
     pub ground_normal: Vector,
     /// The velocity of the ground at the point in m/s, that of its surface included.
     pub ground_velocity: Vector,
-    /// How the ground turns, in rad/s. The character does not turn with it: add this, times the length of the step, to the
-    /// direction in which it looks.
+    /// How the ground turns, in rad/s. The character does not turn with it: add this, times the length of the
+    /// step, to the direction in which it looks.
     pub ground_spin: AngularVector,
-    /// The velocity in the air that is not the character's own, in m/s: that of the ground it left, of its jump, and of
-    /// gravity. Zero on the ground. May be written, as by a blow or an updraught.
+    /// The velocity in the air that is not the character's own, in m/s: that of the ground it left, of its
+    /// jump, and of gravity. Zero on the ground. May be written, as by a blow or an updraught.
     pub fall: Vector,
-    /// How far a drawn character is to be moved along [`up`](CharacterController::up) so that it climbs steps smoothly, in metres.
+    /// How far a drawn character is to be moved along [`up`](CharacterController::up) so that it climbs steps
+    /// smoothly, in metres.
     pub visual_offset: Scalar,
     /// Whether it crouches: also where there is no room to stand up.
     pub is_crouching: bool,
     /// Whether it has no room between something that moves and something that does not.
     pub is_crushed: bool,
-    /// The force in N by which it weighs on the dynamic body that it stands on: its weight, once that body bears it.
+    /// The force in N by which it weighs on the dynamic body that it stands on: its weight, once that
+    /// body bears it.
     pub load: Scalar,
     /// What carries it.
     pub carrier: Option<Carrier>,
@@ -182,12 +187,13 @@ pub struct Carrier {
     pub rotation: Rotation,
     /// The expected position of the character after the step, in metres.
     pub rider: Vector,
-    /// The point of the body under the feet, in its frame, in metres. It stays while the character does not move by itself, so
-    /// that rounding does not add up.
+    /// The point of the body under the feet, in its frame, in metres. It stays while the character does not
+    /// move by itself, so that rounding does not add up.
     pub anchor: Vector,
     /// The velocity of the body under the feet, in m/s.
     pub velocity: Vector,
-    /// The velocity at which the character slides on it, in m/s: a light body that jerks does not take a heavy character along.
+    /// The velocity at which the character slides on it, in m/s: a light body that jerks does not take a
+    /// heavy character along.
     pub slip: Vector,
 }
 
@@ -216,8 +222,8 @@ impl CharacterState {
     }
 }
 
-/// The velocity at which the surface of a collider moves, in its frame, in m/s: of a conveyor belt, an escalator. It carries
-/// characters.
+/// The velocity at which the surface of a collider moves, in its frame, in m/s: of a conveyor belt, an
+/// escalator. It carries characters.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

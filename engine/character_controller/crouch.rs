@@ -22,9 +22,9 @@ use crate::{
 
 /// The shapes of a character that can crouch.
 ///
-/// While [`CharacterInput::crouch`] is set, its [`Collider`] is the lower shape; then the upper one again, as soon as that
-/// touches nothing. The feet stay where they are. [`CharacterState::is_crouching`] tells which shape it has. The character is
-/// spawned with the upper one.
+/// While [`CharacterInput::crouch`] is set, its [`Collider`] is the lower shape; then the upper one again, as
+/// soon as that touches nothing. The feet stay where they are. [`CharacterState::is_crouching`] tells which
+/// shape it has. The character is spawned with the upper one.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};

@@ -1,15 +1,16 @@
-//! The systems that drive dynamic movers: each finds the ground below, and gets the force of the spring and of its drive.
+//! The systems that drive dynamic movers: each finds the ground below, and gets the force of the spring and
+//! of its drive.
 //!
-//! The spring is integrated implicitly, so that it is stable at any rate: with x the distance above the height of rest, v its
-//! rate, and h the length of the step, the acceleration is that at the end of the step,
+//! The spring is integrated implicitly, so that it is stable at any rate: with x the distance above the
+//! height of rest, v its rate, and h the length of the step, the acceleration is that at the end of the step,
 //!
 //! ```text
 //! a = -k (x + h (v + h a)) - c (v + h a),   k = (2π f)²,   c = 2 ζ (2π f)
 //! ```
 //!
-//! (E. Catto, "Soft Constraints", GDC 2011). It is applied as an impulse at the start of the step, so that the whole of the step
-//! has the velocity at its end: a platform that turns is followed exactly. Gravity acts throughout the step, and is balanced
-//! by a force, so that the spring does not sag.
+//! (E. Catto, "Soft Constraints", GDC 2011). It is applied as an impulse at the start of the step, so that
+//! the whole of the step has the velocity at its end: a platform that turns is followed exactly. Gravity acts
+//! throughout the step, and is balanced by a force, so that the spring does not sag.
 
 use bevy_ecs::prelude::*;
 use bevy_time::Time;
@@ -42,11 +43,12 @@ use crate::{
     threads::Threads,
 };
 
-/// The distance up to which a mover without a spring touches the ground, in metres: contacts of the solver rest within it.
+/// The distance up to which a mover without a spring touches the ground, in metres: contacts of the solver
+/// rest within it.
 const TOUCHING: Scalar = 0.02;
 
-/// Maximum speed that the load of one step gives unsteady ground, in m/s. More throws light crates whose edge it steps on, with
-/// less it sinks into them.
+/// Maximum speed that the load of one step gives unsteady ground, in m/s. More throws light crates whose edge
+/// it steps on, with less it sinks into them.
 const MAX_KICK: Scalar = 10.0;
 
 /// What acts on a mover in the step to come.
@@ -259,8 +261,8 @@ impl Hover<'_> {
         }
     }
 
-    /// The velocity of the ground that the mover keeps in the air. Of dynamic ground only the part that the mover already has:
-    /// that may be a crate that it kicked.
+    /// The velocity of the ground that the mover keeps in the air. Of dynamic ground only the part that the
+    /// mover already has: that may be a crate that it kicked.
     fn kept_of(&self, ground: Vector, is_dynamic: bool, own: Vector) -> Vector {
         let along = self.walker.horizontal(ground);
         let square = along.length_squared();
@@ -326,7 +328,8 @@ fn note_ground(state: &mut CharacterState, below: Option<&Below>) {
 /// What is driven of a mover.
 type Driven = (Entity, &'static BodyId, &'static mut MoverPlan, &'static mut CharacterInput);
 
-/// Applies the forces of movers, and the opposite to the ground, and sends their events in the order of their ids.
+/// Applies the forces of movers, and the opposite to the ground, and sends their events in the order
+/// of their ids.
 pub(super) fn drive_movers(
     mut movers: Query<Driven, Without<RigidBodyDisabled>>,
     mut bodies: Query<Forces>,

@@ -31,11 +31,12 @@ const PARTING: Scalar = 1.0e-3;
 
 /// Moves a shape that the game drives, and slides it along what it meets; as a system parameter.
 ///
-/// It is for kinematic characters that set their own [`Position`] or `Transform`, not for bodies that a velocity moves. It
-/// knows nothing of floors, slopes and stairs: [`character_controller`](crate::character_controller) says what does.
+/// It is for kinematic characters that set their own [`Position`] or `Transform`, not for bodies that a
+/// velocity moves. It knows nothing of floors, slopes and stairs:
+/// [`character_controller`](crate::character_controller) says what does.
 ///
-/// The shape keeps [`skin_width`](MoveAndSlideConfig::skin_width) from all colliders. It meets colliders of bodies; sensors and
-/// disabled colliders are passed by. Queries see the world as its components are.
+/// The shape keeps [`skin_width`](MoveAndSlideConfig::skin_width) from all colliders. It meets colliders of
+/// bodies; sensors and disabled colliders are passed by. Queries see the world as its components are.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -89,19 +90,21 @@ pub struct MoveAndSlideConfig {
     pub move_and_slide_iterations: usize,
     /// The most rounds of depenetration before a move, and after it. 16 by default.
     pub depenetration_iterations: usize,
-    /// The overlap with the skin that depenetration may leave, in metres, scaled by [`PhysicsLengthUnit`]. 0.0001 by default.
+    /// The overlap with the skin that depenetration may leave, in metres, scaled by [`PhysicsLengthUnit`].
+    /// 0.0001 by default.
     pub max_depenetration_error: Scalar,
-    /// The deepest overlap that depenetration solves, in metres, scaled by [`PhysicsLengthUnit`]. A shape that is deeper in a
-    /// collider stays. 0.5 by default.
+    /// The deepest overlap that depenetration solves, in metres, scaled by [`PhysicsLengthUnit`]. A shape
+    /// that is deeper in a collider stays. 0.5 by default.
     pub penetration_rejection_threshold: Scalar,
     /// The distance that the shape keeps, in metres, scaled by [`PhysicsLengthUnit`]. 0.01 by default.
     pub skin_width: Scalar,
     /// Outward normals of planes that the velocity never goes into. None by default.
     pub planes: Vec<Dir>,
-    /// Planes with normals whose dot product is more than this count as one: the one that the velocity goes into more.
-    /// [`COS_5_DEGREES`] by default.
+    /// Planes with normals whose dot product is more than this count as one: the one that the velocity goes
+    /// into more. [`COS_5_DEGREES`] by default.
     pub plane_similarity_dot_threshold: Scalar,
-    /// The most planes that a velocity is projected on at once, [`planes`](Self::planes) included. 20 by default.
+    /// The most planes that a velocity is projected on at once, [`planes`](Self::planes) included.
+    /// 20 by default.
     pub max_planes: usize,
 }
 
@@ -161,18 +164,19 @@ impl From<&MoveAndSlideConfig> for DepenetrationConfig {
 pub struct MoveAndSlideOutput {
     /// Its position in metres.
     pub position: Vector,
-    /// Its velocity in m/s, without what went into the planes it met. A character that is to keep its speed along the floor
-    /// does not take this for its velocity, but the way it wants to go.
+    /// Its velocity in m/s, without what went into the planes it met. A character that is to keep its speed
+    /// along the floor does not take this for its velocity, but the way it wants to go.
     pub projected_velocity: Vector,
 }
 
-/// A plane that a shape met in [`MoveAndSlide::move_and_slide`], and the state of the move, which may be changed.
+/// A plane that a shape met in [`MoveAndSlide::move_and_slide`], and the state of the move, which
+/// may be changed.
 #[derive(Debug, PartialEq)]
 pub struct MoveAndSlideHitData<'a> {
     /// The collider of this plane.
     pub entity: Entity,
-    /// How far the shape moved in this sweep until it was [`skin_width`](MoveAndSlideConfig::skin_width) away, in metres. 0 if
-    /// it touched from the start of the move.
+    /// How far the shape moved in this sweep until it was [`skin_width`](MoveAndSlideConfig::skin_width)
+    /// away, in metres. 0 if it touched from the start of the move.
     pub distance: Scalar,
     /// The nearest point of the collider, in the world, in metres.
     pub point: Vector,
@@ -182,7 +186,8 @@ pub struct MoveAndSlideHitData<'a> {
     pub position: &'a mut Vector,
     /// The velocity of the shape in m/s, before it is projected.
     pub velocity: &'a mut Vector,
-    /// How far the shape would move until it touches the collider itself, in metres; along the normal where it slides.
+    /// How far the shape would move until it touches the collider itself, in metres; along the normal
+    /// where it slides.
     pub collision_distance: Scalar,
 }
 
@@ -235,12 +240,12 @@ impl MoveHitData {
 }
 
 impl MoveAndSlide<'_, '_> {
-    /// Moves a shape by a velocity in m/s, for a time, and slides it along what it meets. `on_hit` is called for each plane
-    /// that it touches and does not leave, at the start of the move and where a sweep ends; the same plane may come more than
-    /// once.
+    /// Moves a shape by a velocity in m/s, for a time, and slides it along what it meets. `on_hit` is called
+    /// for each plane that it touches and does not leave, at the start of the move and where a sweep ends;
+    /// the same plane may come more than once.
     ///
-    /// Before and after the move the shape is moved out of what it overlaps. A position or velocity that is infinite or NaN
-    /// moves nothing: the velocity is then zero.
+    /// Before and after the move the shape is moved out of what it overlaps. A position or velocity that is
+    /// infinite or NaN moves nothing: the velocity is then zero.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     pub fn move_and_slide(
         &self,
@@ -296,8 +301,8 @@ impl MoveAndSlide<'_, '_> {
 
     /// The first hit of a shape on its way, in metres. `skin_width` is scaled by [`PhysicsLengthUnit`].
     ///
-    /// A collider that is nearer than the skin from the start is hit at distance 0, unless the way leads along it or off it.
-    /// `None` also if a number is infinite or NaN.
+    /// A collider that is nearer than the skin from the start is hit at distance 0, unless the way leads
+    /// along it or off it. `None` also if a number is infinite or NaN.
     pub fn cast_move(
         &self,
         shape: &Collider,
@@ -315,9 +320,9 @@ impl MoveAndSlide<'_, '_> {
         Some(MoveHitData { entity, distance, point1, point2, normal1, normal2, collision_distance })
     }
 
-    /// Whether a shape has room at a position: no collider is nearer than `skin_width`, which is in metres, scaled by
-    /// [`PhysicsLengthUnit`]. For a character that is to stand up, or to appear somewhere. Exclude its own colliders in the
-    /// filter. `false` if a number is infinite or NaN. Beyond Avian.
+    /// Whether a shape has room at a position: no collider is nearer than `skin_width`, which is in metres,
+    /// scaled by [`PhysicsLengthUnit`]. For a character that is to stand up, or to appear somewhere. Exclude
+    /// its own colliders in the filter. `false` if a number is infinite or NaN. Beyond Avian.
     pub fn fits(
         &self,
         shape: &Collider,
@@ -330,8 +335,8 @@ impl MoveAndSlide<'_, '_> {
         self.mover(&is_solid, shape, shape_rotation, skin_width, filter).fits(shape_position)
     }
 
-    /// The displacement in metres that moves a shape out of what it overlaps with its skin, the shortest one where
-    /// colliders are flat. Between colliders that leave no room it is midway.
+    /// The displacement in metres that moves a shape out of what it overlaps with its skin, the shortest one
+    /// where colliders are flat. Between colliders that leave no room it is midway.
     pub fn depenetrate(
         &self,
         shape: &Collider,
@@ -345,8 +350,8 @@ impl MoveAndSlide<'_, '_> {
         mover.recovery(shape_position, &self.recovery(config), &|_| 1.0)
     }
 
-    /// The displacement in metres that moves a shape by at least the given distances along the given normals, but for
-    /// [`max_depenetration_error`](DepenetrationConfig::max_depenetration_error).
+    /// The displacement in metres that moves a shape by at least the given distances along the given normals,
+    /// but for [`max_depenetration_error`](DepenetrationConfig::max_depenetration_error).
     ///
     /// Planes are taken one after the other, again and again, so that it is near the shortest one.
     pub fn depenetrate_intersections(
@@ -373,9 +378,9 @@ impl MoveAndSlide<'_, '_> {
         way
     }
 
-    /// Calls `callback` with each convex part of a collider within `prediction_distance` metres of a shape, until it returns
-    /// `false`: the collider, the point midway between both, with its penetration, and the normal from the collider to the
-    /// shape. Parts of a collider with about the same normal are one.
+    /// Calls `callback` with each convex part of a collider within `prediction_distance` metres of a shape,
+    /// until it returns `false`: the collider, the point midway between both, with its penetration, and the
+    /// normal from the collider to the shape. Parts of a collider with about the same normal are one.
     ///
     /// Anchors are from the positions of the shape and of the collider.
     pub fn intersections(
@@ -435,8 +440,8 @@ impl MoveAndSlide<'_, '_> {
 struct Slide<'a, 'm> {
     config: &'a MoveAndSlideConfig,
     mover: &'a mut Mover<'m>,
-    /// All planes met in this move. The velocity that was wanted is projected on them at once: one after the other they would
-    /// throw a shape from wall to wall in a corner.
+    /// All planes met in this move. The velocity that was wanted is projected on them at once: one after the
+    /// other they would throw a shape from wall to wall in a corner.
     planes: &'a mut Vec<Plane>,
     wanted: &'a mut Vector,
     position: &'a mut Vector,

@@ -1,8 +1,9 @@
-//! A shape among the colliders: what it touches, how far it can move, and how it gets out of what it overlaps.
+//! A shape among the colliders: what it touches, how far it can move, and how it gets out of
+//! what it overlaps.
 //!
-//! A shape keeps a distance from colliders, its skin. The skin has a slack: a shape that stands at the distance of the skin
-//! moves along a surface with rounding errors, and sweeps must not stop at those. So a sweep stops short of the skin, and a
-//! shape is touching up to a little more than the skin.
+//! A shape keeps a distance from colliders, its skin. The skin has a slack: a shape that stands at the
+//! distance of the skin moves along a surface with rounding errors, and sweeps must not stop at those. So a
+//! sweep stops short of the skin, and a shape is touching up to a little more than the skin.
 
 use bevy_ecs::prelude::*;
 
@@ -19,20 +20,25 @@ const SLACK: Scalar = 0.02;
 /// The least slack of a thin skin, in lengths of a metre.
 const LEAST_SLACK: Scalar = 1.0e-5;
 
-/// Normals with a smaller difference are one. More lets the edges of tiles lift what runs over them; less asks more about edges.
+/// Normals with a smaller difference are one. More lets the edges of tiles lift what runs over them; less
+/// asks more about edges.
 const SAME_NORMAL: Scalar = 3.0e-4;
 
-/// Of the parts of one collider whose normals have a greater dot product, the nearest stands for all: the cosine of 2.5 degrees.
-/// A sweep finds the others. More stops at facets that are found late; less asks about edges of facets that are all alike.
+/// Of the parts of one collider whose normals have a greater dot product, the nearest stands for all: the
+/// cosine of 2.5 degrees. A sweep finds the others. More stops at facets that are found late; less asks about
+/// edges of facets that are all alike.
 const SIMILAR_PART: Scalar = 0.999_048_2;
 
-/// The least share of `up` in the normal of an edge that carries a character, and of what lifts it out of an overlap.
+/// The least share of `up` in the normal of an edge that carries a character, and of what lifts it out
+/// of an overlap.
 pub(super) const EDGE: Scalar = 0.05;
 
-/// What stops a shape is not the edge that is asked about if its normal is farther from it than this: the cosine of 10 degrees.
+/// What stops a shape is not the edge that is asked about if its normal is farther from it than this: the
+/// cosine of 10 degrees.
 const SIMILAR_NORMAL: Scalar = 0.984_807_7;
 
-/// The least rate at which a shape closes with what stops it, as a share of its speed, in the pull-back from it.
+/// The least rate at which a shape closes with what stops it, as a share of its speed, in the
+/// pull-back from it.
 const LEAST_RATE: Scalar = 1.0e-3;
 
 fn is_same(a: Vector, b: Vector) -> bool {
@@ -95,7 +101,8 @@ impl Mover<'_> {
         (self.is_solid)(entity) && !self.ignored.contains(&entity)
     }
 
-    /// The first hit on the way. What the shape is within the skin of is no hit if the way leads along it or off it.
+    /// The first hit on the way. What the shape is within the skin of is no hit if the way leads along
+    /// it or off it.
     pub(super) fn sweep(&self, position: Vector, movement: Vector) -> Option<Sweep> {
         self.sweep_at(position, movement, &|_| true)
     }
@@ -138,8 +145,8 @@ impl Mover<'_> {
         })
     }
 
-    /// The parts that the shape touches, nearest first, and one more that stopped it. Edges between parts that are flush
-    /// are none.
+    /// The parts that the shape touches, nearest first, and one more that stopped it. Edges between parts
+    /// that are flush are none.
     pub(super) fn touching(&self, position: Vector, stopped_by: Option<NearPart>) -> Vec<NearPart> {
         let mut near = self.near(position, self.skin + self.slack());
         near.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -193,10 +200,12 @@ impl Mover<'_> {
         position.is_finite() && self.near(position, self.skin).iter().all(|part| part.distance >= least)
     }
 
-    /// Whether a part is met at an edge that is flush with the plane of another: the shape moves over it along that plane.
+    /// Whether a part is met at an edge that is flush with the plane of another: the shape moves over it
+    /// along that plane.
     ///
-    /// The union of both has no such edge there. Each of two parts with about the same normal may seem flush with the plane of
-    /// the other. So the shape moves so far that a part which rises from the plane by the angle of the normals stops it.
+    /// The union of both has no such edge there. Each of two parts with about the same normal may seem flush
+    /// with the plane of the other. So the shape moves so far that a part which rises from the plane by the
+    /// angle of the normals stops it.
     fn is_inner_edge(&self, position: Vector, edge: &NearPart, plane: &NearPart) -> bool {
         let cosine = edge.normal.dot(plane.normal);
         let height = (edge.points[0] - plane.points[0]).dot(plane.normal);
@@ -214,9 +223,10 @@ impl Mover<'_> {
 
     /// The shortest way out of what the shape overlaps with its skin, as a displacement.
     ///
-    /// The deepest overlap is solved first, and looked at again: a box that sank into tiles is no longer in those beside when
-    /// it is above one. Between two walls that lean apart there may be no way but a long one up: along `up` walls do not lift.
-    /// `share` gives the fraction of an overlap with a part that the shape resolves.
+    /// The deepest overlap is solved first, and looked at again: a box that sank into tiles is no longer in
+    /// those beside when it is above one. Between two walls that lean apart there may be no way but a long
+    /// one up: along `up` walls do not lift. `share` gives the fraction of an overlap with a part that the
+    /// shape resolves.
     pub(super) fn recovery(
         &self,
         position: Vector,

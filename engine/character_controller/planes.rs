@@ -1,12 +1,13 @@
 //! The point nearest to a given one that is above all of some planes.
 //!
-//! Planes are taken one after the other, as in R. Seidel, "Small-dimensional linear programming and convex hulls made easy"
-//! (1991). The nearest point is kept until a plane is above it. The new one is then on that plane, so that it is the same
-//! problem with the planes before, in one dimension less.
+//! Planes are taken one after the other, as in R. Seidel, "Small-dimensional linear programming and convex
+//! hulls made easy" (1991). The nearest point is kept until a plane is above it. The new one is then on that
+//! plane, so that it is the same problem with the planes before, in one dimension less.
 
 use crate::math::{DIM, Scalar, Vector};
 
-/// Planes that meet at less than this angle, in radians, have no line in common: f32 does not know where it is.
+/// Planes that meet at less than this angle, in radians, have no line in common: f32 does not
+/// know where it is.
 const PARALLEL: Scalar = 1.0e-5;
 
 /// The points `x` with `normal · x >= offset`, the normal being of unit length.
@@ -23,8 +24,9 @@ impl Plane {
     }
 }
 
-/// Adds a plane through zero to planes that a velocity must not go into. Of planes whose normals have a dot product above
-/// `similarity` only the one that the velocity goes into most is kept: the line of two that are nearly parallel is noise.
+/// Adds a plane through zero to planes that a velocity must not go into. Of planes whose normals have a dot
+/// product above `similarity` only the one that the velocity goes into most is kept: the line of two that are
+/// nearly parallel is noise.
 pub(super) fn add_facing(planes: &mut Vec<Plane>, normal: Vector, velocity: Vector, similarity: Scalar) {
     match planes.iter_mut().find(|plane| plane.normal.dot(normal) > similarity) {
         Some(plane) if normal.dot(velocity) < plane.normal.dot(velocity) => plane.normal = normal,
@@ -75,18 +77,20 @@ impl Flat {
     }
 }
 
-/// The longest way out of an overlap, as a multiple of its depth: that of a wedge of 11 degrees. Larger moves a shape metres along
-/// two walls that are nearly parallel; smaller leaves it in sharp corners.
+/// The longest way out of an overlap, as a multiple of its depth: that of a wedge of 11 degrees. Larger moves
+/// a shape metres along two walls that are nearly parallel; smaller leaves it in sharp corners.
 const LONGEST: Scalar = 10.0;
 
-/// The shortest way out of planes that a shape is below, and whether it leads out. Where there is no room it leads midway.
+/// The shortest way out of planes that a shape is below, and whether it leads out. Where there is no room it
+/// leads midway.
 pub(super) fn way_out(planes: &[Plane], tolerance: Scalar) -> (Vector, bool) {
     let deepest = planes.iter().map(|plane| plane.offset).fold(0.0, Scalar::max);
     let out = nearest(planes, Vector::ZERO, tolerance).filter(|way| way.length() <= LONGEST * deepest);
     out.map_or_else(|| (compromise(planes), false), |way| (way, true))
 }
 
-/// The point nearest to `from` that is above all planes, or below them by `tolerance` at most. `None` if there is none.
+/// The point nearest to `from` that is above all planes, or below them by `tolerance` at most. `None` if
+/// there is none.
 pub(super) fn nearest(planes: &[Plane], from: Vector, tolerance: Scalar) -> Option<Vector> {
     nearest_on(Flat::default(), planes, from, tolerance)
 }
@@ -101,11 +105,12 @@ fn nearest_on(flat: Flat, planes: &[Plane], from: Vector, tolerance: Scalar) -> 
     Some(x)
 }
 
-/// The rounds of [`compromise`]. Each leaves at most `1 - 1 / planes` of the difference between parallel planes.
+/// The rounds of [`compromise`]. Each leaves at most `1 - 1 / planes` of the difference between
+/// parallel planes.
 const ROUNDS: usize = 64;
 
-/// The point with the least sum of squares by which it is below planes that have no point in common: midway between two
-/// that face each other.
+/// The point with the least sum of squares by which it is below planes that have no point in common: midway
+/// between two that face each other.
 fn compromise(planes: &[Plane]) -> Vector {
     let mut x = Vector::ZERO;
     let share = 1.0 / planes.len().max(1) as Scalar;

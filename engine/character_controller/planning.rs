@@ -130,8 +130,8 @@ impl Planning<'_> {
         self.state.visual_offset *= SMOOTHING / (SMOOTHING + time);
     }
 
-    /// Moves out of what it overlaps. Dynamic bodies that are no floor are left to the solver; of two characters each moves by
-    /// half of the overlap.
+    /// Moves out of what it overlaps. Dynamic bodies that are no floor are left to the solver; of two
+    /// characters each moves by half of the overlap.
     fn recover(&mut self) {
         let (bodies, walker) = (self.around.bodies, &self.walker);
         let share = |part: &NearPart| {
@@ -175,9 +175,9 @@ impl Planning<'_> {
         self.ridden_to = self.walker.position;
     }
 
-    /// How fast the character slides on a carrier whose velocity changes. It gets the share of the change that a body of the carrier's mass
-    /// gives to one of its own, and friction then ends the slip by g h in a step. So only what is light and jerks leaves it
-    /// behind: a limb that kicks does not throw it.
+    /// How fast the character slides on a carrier whose velocity changes. It gets the share of the change
+    /// that a body of the carrier's mass gives to one of its own, and friction then ends the slip by g h in a
+    /// step. So only what is light and jerks leaves it behind: a limb that kicks does not throw it.
     fn slip_after(&self, carrier: Entity, slip: Vector, change: Vector) -> Vector {
         let (up, length) = (self.walker.up, change.length());
         let friction = self.gravity.length() * self.around.time;
@@ -434,8 +434,8 @@ impl Planning<'_> {
         }
     }
 
-    /// Pushes a dynamic body: as a body of the character's mass would that loses its speed to it, by the greatest force at
-    /// most. Returns the impulse.
+    /// Pushes a dynamic body: as a body of the character's mass would that loses its speed to it, by the
+    /// greatest force at most. Returns the impulse.
     fn push(&mut self, part: &NearPart, velocity: Vector) -> Scalar {
         let around = self.around;
         let mass = self.controller.mass;
@@ -460,7 +460,8 @@ impl Planning<'_> {
         force * around.time
     }
 
-    /// Weighs on a dynamic body that the character stands on: on the same one as before, which had a speed along `up`.
+    /// Weighs on a dynamic body that the character stands on: on the same one as before, which had a
+    /// speed along `up`.
     ///
     fn weigh(&mut self, (before, speed): (Option<Entity>, Scalar)) {
         let load = core::mem::take(&mut self.state.load);

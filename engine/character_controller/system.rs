@@ -1,7 +1,8 @@
-//! The systems that move characters: each plans its way through the step to come, then its body gets the velocity that
-//! takes it there.
+//! The systems that move characters: each plans its way through the step to come, then its body gets the
+//! velocity that takes it there.
 //!
-//! All characters plan from the world as it is, so that neither their order nor the number of threads matters.
+//! All characters plan from the world as it is, so that neither their order nor the number of
+//! threads matters.
 
 use bevy_ecs::{prelude::*, query::QueryData};
 use bevy_time::Time;
@@ -156,7 +157,8 @@ pub(super) fn feet_of(shape: &Collider, rotation: &Rotation, up: Vector) -> Scal
 type Driven =
     (&'static BodyId, &'static mut CharacterPlan, &'static mut CharacterInput, &'static mut LinearVelocity);
 
-/// Gives the bodies of characters their velocities, pushes what they pushed, and sends their events in the order of their ids.
+/// Gives the bodies of characters their velocities, pushes what they pushed, and sends their events in the
+/// order of their ids.
 pub(super) fn drive_characters(
     mut characters: Query<Driven, Without<RigidBodyDisabled>>,
     mut others: Query<Forces, Without<CharacterPlan>>,

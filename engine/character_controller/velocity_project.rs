@@ -6,8 +6,8 @@ use crate::math::{AdjustPrecision, DIM, Dir, Scalar, Vector, VectorF32};
 /// The share of a velocity that may go into a plane: the rounding of normals.
 const TOLERANCE: Scalar = 2.0e-6;
 
-/// The velocity nearest to `v` that goes into none of the planes with the given outward normals. Zero if there is no other,
-/// or if a component of `v` is infinite or NaN.
+/// The velocity nearest to `v` that goes into none of the planes with the given outward normals. Zero if
+/// there is no other, or if a component of `v` is infinite or NaN.
 ///
 /// So it slides along one plane, along the line of two, and stops in a corner of three.
 ///
@@ -33,8 +33,8 @@ pub(super) fn along(v: Vector, planes: &[Plane]) -> Vector {
     nearest(planes, v, TOLERANCE * speed).unwrap_or(Vector::ZERO)
 }
 
-/// As [`project_velocity`], by trying each face of the cone of free velocities. Its time grows with the third power of the
-/// number of planes; it is there to test the other.
+/// As [`project_velocity`], by trying each face of the cone of free velocities. Its time grows with the third
+/// power of the number of planes; it is there to test the other.
 #[must_use]
 pub fn project_velocity_bruteforce(v: Vector, normals: &[Dir]) -> Vector {
     let speed = v.length();

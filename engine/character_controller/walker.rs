@@ -1,7 +1,8 @@
 //! How a character moves among the colliders: along the ground, up steps, and through the air.
 //!
-//! On the ground it moves by a horizontal way. Whatever is no floor is a vertical wall to it, so that the way is solved in the
-//! horizontal plane alone, and floors then tell how far it is lifted. So neither slopes nor walls change its speed.
+//! On the ground it moves by a horizontal way. Whatever is no floor is a vertical wall to it, so that the way
+//! is solved in the horizontal plane alone, and floors then tell how far it is lifted. So neither slopes nor
+//! walls change its speed.
 
 use super::{
     move_and_slide::MoveAndSlideConfig,
@@ -61,7 +62,8 @@ pub(super) struct Walker<'a> {
 }
 
 impl<'a> Walker<'a> {
-    /// One that climbs no steps, at a position, with the height of its feet along `up`, and its steepest slope in radians.
+    /// One that climbs no steps, at a position, with the height of its feet along `up`, and its steepest
+    /// slope in radians.
     pub(super) fn new(
         mover: Mover<'a>,
         position: Vector,
@@ -156,7 +158,8 @@ impl Walker<'_> {
         -floor.dot(way) / floor.dot(self.up)
     }
 
-    /// Walks by a horizontal way, on a floor. Returns the way of the last sweep, as long as the whole: it leads on.
+    /// Walks by a horizontal way, on a floor. Returns the way of the last sweep, as long as the
+    /// whole: it leads on.
     pub(super) fn walk(&mut self, way: Vector, mut floor: Vector) -> Vector {
         let mut left: Scalar = 1.0;
         let mut stopped_by: Option<Sweep> = None;
@@ -281,8 +284,8 @@ impl Walker<'_> {
         is_ground
     }
 
-    /// Falls for a time, moving by its own velocity as well, which is horizontal. Returns the ground it came onto, with the
-    /// speed, and the time left.
+    /// Falls for a time, moving by its own velocity as well, which is horizontal. Returns the ground it came
+    /// onto, with the speed, and the time left.
     pub(super) fn fly(
         &mut self,
         fall: &mut Vector,

@@ -11,13 +11,15 @@ pub use plugin::ColliderTreePlugin;
 
 use bevy_ecs::prelude::*;
 
-/// System sets that update the trees, in this order, in [`PhysicsSchedule`](crate::schedule::PhysicsSchedule).
+/// System sets that update the trees, in this order, in
+/// [`PhysicsSchedule`](crate::schedule::PhysicsSchedule).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ColliderTreeSystems {
     /// Boxes follow their colliders, before pairs are searched.
     UpdateAabbs,
     /// Optimization of the trees starts, after pairs were found.
     BeginOptimize,
-    /// Optimization of the trees is done, in [`PhysicsStepSystems::Finalize`](crate::schedule::PhysicsStepSystems::Finalize).
+    /// Optimization of the trees is done, in
+    /// [`PhysicsStepSystems::Finalize`](crate::schedule::PhysicsStepSystems::Finalize).
     EndOptimize,
 }

@@ -15,7 +15,8 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 pub struct ColliderTreeOptimization {
     /// The mode. [`TreeOptimizationMode::Adaptive`] by default.
     pub optimization_mode: TreeOptimizationMode,
-    /// Whether trees are optimized in place. True by default. False is to optimize a copy and swap it in: *not yet*.
+    /// Whether trees are optimized in place. True by default. False is to optimize a copy and swap it
+    /// in: *not yet*.
     pub optimize_in_place: bool,
     /// Whether optimization may run in parallel with the rest of the step. True by default. *Not yet*.
     pub use_async_tasks: bool,
@@ -43,9 +44,9 @@ pub enum TreeOptimizationMode {
     PartialRebuild,
     /// Moved leaves grow in place. When one in 16 has, the tree is rebuilt.
     FullRebuild,
-    /// Moved leaves grow in place. When one in 16 has, the boxes above them are refitted. When the sum of all boxes has
-    /// grown by a quarter, the tree is rebuilt, in part or in full by the share of moved leaves. Where that share calls
-    /// for reinsertion, this engine rebuilds in part: it costs about the same.
+    /// Moved leaves grow in place. When one in 16 has, the boxes above them are refitted. When the sum of all
+    /// boxes has grown by a quarter, the tree is rebuilt, in part or in full by the share of moved leaves.
+    /// Where that share calls for reinsertion, this engine rebuilds in part: it costs about the same.
     Adaptive {
         /// Up to this share of moved leaves they are [reinserted](Self::Reinsert). 0.15 by default.
         reinsert_threshold: f32,

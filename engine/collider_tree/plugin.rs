@@ -15,7 +15,8 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Updates the trees for colliders of type `C`. Add one instance per collider type. All instances share the trees.
+/// Updates the trees for colliders of type `C`. Add one instance per collider type. All instances
+/// share the trees.
 pub struct ColliderTreePlugin<C: AnyCollider>(PhantomData<fn() -> C>);
 
 impl<C: AnyCollider> Default for ColliderTreePlugin<C> {

@@ -39,17 +39,19 @@ struct Place {
 /// Minimum number of new leaves that are inserted in one build. Fewer are inserted one by one.
 const BULK: usize = 256;
 
-/// A tree is optimized when one in this many leaves has grown. A larger number refits more often, a smaller one leaves
-/// loose boxes that find more pairs.
+/// A tree is optimized when one in this many leaves has grown. A larger number refits more often, a smaller
+/// one leaves loose boxes that find more pairs.
 const GROWN: usize = 16;
 
-/// The whole tree is refitted when one in this many leaves has grown; with fewer only the boxes above grown leaves.
+/// The whole tree is refitted when one in this many leaves has grown; with fewer only the boxes above
+/// grown leaves.
 const MOST: usize = 3;
 
 /// The cost of a tree is computed when one in this many leaves has moved.
 const MOVED: usize = 4;
 
-/// A tree is rebuilt when its cost has grown by this factor. Less rebuilds more often, more makes searches slower.
+/// A tree is rebuilt when its cost has grown by this factor. Less rebuilds more often, more makes
+/// searches slower.
 const WORSE: f32 = 1.25;
 
 impl ProxyTable {
@@ -84,11 +86,11 @@ impl ProxyTable {
         self.places.get(id as usize).copied().flatten().is_some_and(|p| p.leaf.is_none())
     }
 
-    /// Moves the leaves of the colliders in `moved` to their fat boxes, and optimizes the trees. The boxes in `fat` of
-    /// all other colliders must be unchanged.
+    /// Moves the leaves of the colliders in `moved` to their fat boxes, and optimizes the trees. The boxes in
+    /// `fat` of all other colliders must be unchanged.
     ///
-    /// Unless the mode is to reinsert, leaves grow in place until one in [`GROWN`] has: the work of refitting or
-    /// rebuilding is then in proportion to what grew. Returns the time for optimizing.
+    /// Unless the mode is to reinsert, leaves grow in place until one in [`GROWN`] has: the work of refitting
+    /// or rebuilding is then in proportion to what grew. Returns the time for optimizing.
     pub(crate) fn update(
         &mut self,
         moved: &BitSet,
@@ -176,8 +178,8 @@ impl ProxyTable {
         }
     }
 
-    /// The query for new pairs of a collider that moved. What is static forms pairs with what is dynamic or kinematic. Pairs
-    /// in which neither side has a body matter to sensors only, and are filtered later.
+    /// The query for new pairs of a collider that moved. What is static forms pairs with what is dynamic or
+    /// kinematic. Pairs in which neither side has a body matter to sensors only, and are filtered later.
     pub(crate) fn mover(&self, id: u32, aabb: Aabb) -> Option<Mover> {
         let kind = self.kind(id)?;
         let dynamic = PairMask::only(TreeKind::Dynamic);
@@ -208,8 +210,8 @@ mod tests {
 
     const KIND: TreeKind = TreeKind::Dynamic;
 
-    /// How far the tree reaches beyond its leaves after the last `moved` of a row of a hundred boxes moved to its
-    /// middle.
+    /// How far the tree reaches beyond its leaves after the last `moved` of a row of a hundred boxes moved
+    /// to its middle.
     fn slack(moved: u32, mode: TreeOptimizationMode) -> f32 {
         let at = |x: u32| Aabb::new(Vector::X * x as f32, Vector::X * x as f32 + Vector::ONE);
         let mut fat: Vec<_> = (0..100).map(at).collect();

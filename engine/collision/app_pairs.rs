@@ -15,7 +15,8 @@ use crate::dynamics::{
     tables::{Bodies, Colliders, Contacts, Tables},
 };
 
-/// Makes contacts of the pairs that the app added, and removes those that it removed, in the order of collider ids.
+/// Makes contacts of the pairs that the app added, and removes those that it removed, in the order of
+/// collider ids.
 pub(crate) fn apply_app_pairs(mut graph: ResMut<ContactGraph>, mut tables: Tables) {
     let (added, removed) = graph.bypass_change_detection().take_changes();
     for entities in removed {

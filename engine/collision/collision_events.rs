@@ -1,29 +1,33 @@
 //! Collision events: [`CollisionStart`] and [`CollisionEnd`], as messages and for observers.
 //!
-//! A collider with [`CollisionEventsEnabled`] reports when it begins and ceases to touch another collider. It may be
-//! inserted and removed at any time; it counts from the next step on.
+//! A collider with [`CollisionEventsEnabled`] reports when it begins and ceases to touch another collider. It
+//! may be inserted and removed at any time; it counts from the next step on.
 //!
 //! - A **message** is written once per pair, if either collider reports. Read it with a `MessageReader`.
-//! - An **entity event** is triggered for each of the two that reports, with that collider first. Observe it on the
-//!   collider's entity.
+//! - An **entity event** is triggered for each of the two that reports, with that collider first. Observe it
+//!   on the collider's entity.
 //!
-//! Events are sent at the end of a step, in [`CollisionEventSystems`](super::narrow_phase::CollisionEventSystems): the
-//! messages, then the triggers, all starts before all ends, in the order of the engine's ids. The order is the same in
-//! every run and with any number of threads. Impulses are known then, and
-//! [`Collisions`](super::contact_types::Collisions) has the contacts.
+//! Events are sent at the end of a step, in
+//! [`CollisionEventSystems`](super::narrow_phase::CollisionEventSystems): the messages, then the triggers,
+//! all starts before all ends, in the order of the engine's ids. The order is the same in every run and with
+//! any number of threads. Impulses are known then, and [`Collisions`](super::contact_types::Collisions) has
+//! the contacts.
 //!
-//! A collision also ends if a collider is despawned or its component removed. Such an end is sent at once, also while
-//! physics is paused; within a step it is sent with that step's events. The event then names an entity that may be gone;
-//! observers of the other collider run. A collision ends in the next step if a collider or its body is disabled, if the
-//! body is removed, or if layers forbid the pair from now on. The colliders of a disabled body touch nothing. Those of a removed body may begin to touch others one step later, as colliders without a body. Bodies that fall asleep do not end a
-//! collision, and a collider that moves to another body ends none with what it still touches.
+//! A collision also ends if a collider is despawned or its component removed. Such an end is sent at once,
+//! also while physics is paused; within a step it is sent with that step's events. The event then names an
+//! entity that may be gone; observers of the other collider run. A collision ends in the next step if a
+//! collider or its body is disabled, if the body is removed, or if layers forbid the pair from now on. The
+//! colliders of a disabled body touch nothing. Those of a removed body may begin to touch others one step
+//! later, as colliders without a body. Bodies that fall asleep do not end a collision, and a collider that
+//! moves to another body ends none with what it still touches.
 //!
-//! Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are 2 cm (times the
-//! length unit) apart. So what rattles on the ground ends no collision with it. Sensors touch while they overlap.
+//! Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are
+//! 2 cm (times the length unit) apart. So what rattles on the ground ends no collision with it. Sensors touch
+//! while they overlap.
 //!
-//! A pair is reported if one of its bodies is dynamic or kinematic, and a pair of colliders without bodies if one is a
-//! [`Sensor`](super::collider::Sensor). Colliders of static bodies are no pair with each other or with a collider without a
-//! body, sensor or not: a trigger zone is not told of the floor below it.
+//! A pair is reported if one of its bodies is dynamic or kinematic, and a pair of colliders without bodies if
+//! one is a [`Sensor`](super::collider::Sensor). Colliders of static bodies are no pair with each other or
+//! with a collider without a body, sensor or not: a trigger zone is not told of the floor below it.
 //!
 //! ```
 //! # use avian::prelude::*;
@@ -98,9 +102,11 @@ pub type OnCollisionStart = CollisionStart;
 #[deprecated(since = "0.4.0", note = "renamed to `CollisionEnd`")]
 pub type OnCollisionEnd = CollisionEnd;
 
-/// Has a collider report when it begins and ceases to touch others, by [`CollisionStart`] and [`CollisionEnd`].
+/// Has a collider report when it begins and ceases to touch others, by [`CollisionStart`] and
+/// [`CollisionEnd`].
 ///
-/// If all colliders are to report, call `app.register_required_components::<Collider, CollisionEventsEnabled>()`.
+/// If all colliders are to report, call `app.register_required_components::<Collider,
+/// CollisionEventsEnabled>()`.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -124,7 +130,8 @@ macro_rules! seen_from {
 #[derive(Resource, Default)]
 pub(crate) struct IsSending(pub(crate) bool);
 
-/// Sends what began and ended since the last call. Observers may despawn colliders, which ends more collisions.
+/// Sends what began and ended since the last call. Observers may despawn colliders, which ends
+/// more collisions.
 pub(crate) fn send_collision_events(world: &mut World) {
     if core::mem::replace(&mut world.resource_mut::<IsSending>().0, true) {
         return;

@@ -1,7 +1,7 @@
 //! [`CollisionHit`]: blows above a speed, for sound and damage.
 //!
-//! A collider with [`CollisionHitsEnabled`] reports each blow in which it meets another collider faster than its
-//! [`min_speed`](CollisionHitsEnabled::min_speed). Blows are sent as messages and entity events with the
+//! A collider with [`CollisionHitsEnabled`] reports each blow in which it meets another collider faster than
+//! its [`min_speed`](CollisionHitsEnabled::min_speed). Blows are sent as messages and entity events with the
 //! [collision events](super::collision_events) of the step, before these.
 //!
 //! ```
@@ -59,7 +59,8 @@ pub struct CollisionHit {
     pub normal: Vector,
     /// The speed at which they approached along the normal as they met, m/s.
     pub speed: Scalar,
-    /// The impulse along the normal, N·s. A body that stops gets its momentum; on several colliders these share it.
+    /// The impulse along the normal, N·s. A body that stops gets its momentum; on several colliders
+    /// these share it.
     pub impulse: Scalar,
 }
 
@@ -187,8 +188,8 @@ fn velocities(bodies: &BodyTable, pair: [u32; 2]) -> [Velocity; 2] {
     })
 }
 
-/// Makes hits of the fast contacts that got impulses, once their bodies do not approach any more, by half at least. A blow
-/// that takes several steps has the speed at which it began, and is one hit.
+/// Makes hits of the fast contacts that got impulses, once their bodies do not approach any more, by half at
+/// least. A blow that takes several steps has the speed at which it began, and is one hit.
 pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contacts: ResMut<Contacts>) {
     let Contacts { table, hits: Hits { approaches, going, blows }, .. } =
         &mut *contacts.bypass_change_detection();
@@ -252,7 +253,8 @@ pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contac
     }
 }
 
-/// The mass that two bodies together have along a normal, at a point given from both centres of mass. 0 if neither moves.
+/// The mass that two bodies together have along a normal, at a point given from both centres of mass. 0 if
+/// neither moves.
 fn mass_along(
     solver: &StepSolver,
     bodies: &BodyTable,

@@ -90,15 +90,15 @@ pub(crate) fn update_contacts(
 pub(crate) fn link_contacts(mut tables: Tables) {
     let changed = core::mem::take(&mut tables.contacts.changed);
     let mut parted = core::mem::take(&mut tables.contacts.parted);
-    let (mut link, mut reporter) = tables.link_and_reporter();
-    link.apply(&changed, |id, contact, status| {
+    let (mut manager, mut reporter) = tables.contact_manager_and_reporter();
+    manager.apply(&changed, |id, contact, status| {
         if reporter.note_points(id, contact, status) {
             parted.insert(id);
         }
     });
     (tables.contacts.changed, tables.contacts.parted) = (changed, parted);
     if cfg!(feature = "validate") {
-        tables.link().validate();
+        tables.contact_manager().validate();
     }
 }
 
@@ -122,8 +122,8 @@ pub(crate) fn note_touching(unit: Res<PhysicsLengthUnit>, time: Res<Time<Physics
     for id in new {
         tables.contacts.nearing.remove(id);
         if tables.contacts.table.is_live(id) {
-            let (link, mut reporter) = tables.link_and_reporter();
-            let contact = link.contacts.get(id);
+            let (manager, mut reporter) = tables.contact_manager_and_reporter();
+            let contact = manager.contacts.get(id);
             if contact.flags.has(ContactFlags::TOUCHING) {
                 reporter.note(contact, Status::Began);
                 continue;
@@ -131,5 +131,5 @@ pub(crate) fn note_touching(unit: Res<PhysicsLengthUnit>, time: Res<Time<Physics
         }
         tables.contacts.met.remove(id);
     }
-    tables.link_and_reporter().1.drop_resumed();
+    tables.contact_manager_and_reporter().1.drop_resumed();
 }

@@ -20,11 +20,12 @@ use crate::dynamics::{
 
 /// Filters pairs and changes contacts, with the access of a system parameter.
 ///
-/// The methods run for colliders with [`ActiveCollisionHooks`], one pair at a time, in the order of the engine's ids. So
-/// they may depend on each other only through `commands`, which are applied within the step.
+/// The methods run for colliders with [`ActiveCollisionHooks`], one pair at a time, in the order of the
+/// engine's ids. So they may depend on each other only through `commands`, which are applied within the step.
 ///
-/// Add them with [`PhysicsPlugins::with_collision_hooks`](crate::PhysicsPlugins::with_collision_hooks). An app has one set
-/// of hooks. They must not read [`Collisions`](super::contact_types::Collisions), which is being changed.
+/// Add them with [`PhysicsPlugins::with_collision_hooks`](crate::PhysicsPlugins::with_collision_hooks). An
+/// app has one set of hooks. They must not read [`Collisions`](super::contact_types::Collisions), which is
+/// being changed.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -60,12 +61,14 @@ pub trait CollisionHooks: ReadOnlySystemParam + Send + Sync {
         true
     }
 
-    /// Changes the contact of two colliders that touch: its points, normals, friction, restitution and surface velocity.
-    /// Called in every step in which one of their bodies is awake, if one has [`ActiveCollisionHooks::MODIFY_CONTACTS`].
-    /// `false` drops the contact in this step: the colliders do not touch.
+    /// Changes the contact of two colliders that touch: its points, normals, friction, restitution and
+    /// surface velocity. Called in every step in which one of their bodies is awake, if one has
+    /// [`ActiveCollisionHooks::MODIFY_CONTACTS`]. `false` drops the contact in this step: the colliders
+    /// do not touch.
     ///
     /// Manifolds that are not finite, or whose normal is not of unit length, are dropped. Without
-    /// [`GENERATE_CONSTRAINTS`](super::contact_types::ContactPairFlags::GENERATE_CONSTRAINTS) the contact is not solved.
+    /// [`GENERATE_CONSTRAINTS`](super::contact_types::ContactPairFlags::GENERATE_CONSTRAINTS) the contact
+    /// is not solved.
     fn modify_contacts(&self, _contacts: &mut ContactPair, _commands: &mut Commands) -> bool {
         true
     }

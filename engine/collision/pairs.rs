@@ -27,8 +27,8 @@ use crate::{
     threads::Threads,
 };
 
-/// Growth of a fat box on every side, times the length unit. Small shapes get less. More finds more pairs that never
-/// touch, less updates the trees more often.
+/// Growth of a fat box on every side, times the length unit. Small shapes get less. More finds more pairs
+/// that never touch, less updates the trees more often.
 const FAT_MARGIN: f32 = 0.05;
 
 /// Settings of fat boxes.
@@ -47,8 +47,8 @@ impl FatBoxes<'_> {
 /// The components with a collider's boxes.
 type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut EnlargedAabb);
 
-/// Moves colliders that were added or changed by the app, and their leaves. Boxes of bodies whose velocity the app set
-/// are swept along it, since they may hit something in this step.
+/// Moves colliders that were added or changed by the app, and their leaves. Boxes of bodies whose velocity
+/// the app set are swept along it, since they may hit something in this step.
 pub(crate) fn update_stale_boxes(
     (fat_boxes, threads): (FatBoxes, Res<Threads>),
     mut tables: Tables,
@@ -87,8 +87,8 @@ pub(crate) fn update_stale_boxes(
     let (mode, pool) = (optimization.optimization_mode, &threads.pool);
     diagnostics.optimize += trees.update(&changed, &table.fat, mode, pool);
     moved.union_with(&changed);
-    let mut link = tables.link();
-    resting.into_iter().for_each(|id| link.visit_of_collider(id));
+    let mut manager = tables.contact_manager();
+    resting.into_iter().for_each(|id| manager.visit_of_collider(id));
     diagnostics.update += start.elapsed();
 }
 
@@ -197,7 +197,8 @@ struct Contacted<'a> {
 }
 
 impl Known for Contacted<'_> {
-    /// Colliders of one body, and bodies in one place, may overlap in thousands of pairs. They are not even listed.
+    /// Colliders of one body, and bodies in one place, may overlap in thousands of pairs. They are
+    /// not even listed.
     #[inline]
     fn is_plain(&self, a: u32, b: u32) -> bool {
         let body = self.colliders.body(a);
@@ -267,27 +268,27 @@ pub(crate) fn add_contacts(
     diagnostics.broad_phase += start.elapsed();
 }
 
-/// Adds the contact of a pair that has none, with bits besides those that follow from the colliders. Returns a sleeping
-/// body for [`wake_beset`].
+/// Adds the contact of a pair that has none, with bits besides those that follow from the colliders. Returns
+/// a sleeping body for [`wake_beset`].
 pub(crate) fn add_contact(tables: &mut Tables, [a, b]: [u32; 2], flags: ContactFlags) -> Option<u32> {
-    let mut link = tables.link();
-    let id = link.create_with(a, b, flags);
-    link.visit(id);
-    link.unseen_sleeper(id)
+    let mut manager = tables.contact_manager();
+    let id = manager.create_with(a, b, flags);
+    manager.visit(id);
+    manager.unseen_sleeper(id)
 }
 
 /// The hooks that filter pairs, between the search and [`add_contacts`].
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct FilterPairs;
 
-/// Wakes sleeping bodies beside which something static, or kinematic at rest, appeared. Bodies that were put to sleep
-/// in this step stay asleep: a level may be spawned asleep.
+/// Wakes sleeping bodies beside which something static, or kinematic at rest, appeared. Bodies that were put
+/// to sleep in this step stay asleep: a level may be spawned asleep.
 pub(crate) fn wake_beset(sleepers: &[u32], tables: &mut Tables) {
     if sleepers.is_empty() {
         return;
     }
     let flipped = tables.bodies.table.flipped_set();
     for &body in sleepers.iter().filter(|body| !flipped.contains(**body)) {
-        tables.link().wake_body(body);
+        tables.contact_manager().wake_body(body);
     }
 }

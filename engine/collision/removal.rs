@@ -1,4 +1,5 @@
-//! Ends the collisions of colliders that are despawned or lose their shape: at once, or within a step at its end.
+//! Ends the collisions of colliders that are despawned or lose their shape: at once, or within a
+//! step at its end.
 
 use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
@@ -42,7 +43,8 @@ impl Leaving<'_, '_> {
         (table.ids.is_live(id) && entities[id as usize] == entity).then_some(id)
     }
 
-    /// Ends the collisions of a collider whose id is discarded. Within a step, the removal of the id ends them.
+    /// Ends the collisions of a collider whose id is discarded. Within a step, the removal of the
+    /// id ends them.
     fn lose(&mut self, entity: Entity) {
         if !self.queue.is_within_step
             && let Some(id) = self.id_of(entity)

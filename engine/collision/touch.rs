@@ -1,8 +1,8 @@
-//! Whether colliders touch. A contact has points before: from 2 cm before the surfaces meet, or if they may meet in the
-//! step at hand, since the solver stops them there.
+//! Whether colliders touch. A contact has points before: from 2 cm before the surfaces meet, or if they may
+//! meet in the step at hand, since the solver stops them there.
 //!
-//! Colliders begin to touch in the step in which a point gets an impulse, or their surfaces meet. They touch until the
-//! contact has no points any more. So a body that rattles on the ground touches it all the time.
+//! Colliders begin to touch in the step in which a point gets an impulse, or their surfaces meet. They touch
+//! until the contact has no points any more. So a body that rattles on the ground touches it all the time.
 
 use kernel::{
     contact::{Contact, ContactFlags, ContactTable, Manifold, ManifoldPoint},
@@ -11,8 +11,8 @@ use kernel::{
 
 use crate::dynamics::solver::config::PhysicsLengthUnit;
 
-/// Distance up to which surfaces have met, in metres times the length unit: more than the rounding errors of what lies
-/// on something without a force, and not to be seen.
+/// Distance up to which surfaces have met, in metres times the length unit: more than the rounding errors of
+/// what lies on something without a force, and not to be seen.
 const GAP: f32 = 1.0e-4;
 
 /// Distance up to which surfaces have met, in units of length of the app.

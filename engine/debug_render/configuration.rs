@@ -7,10 +7,11 @@ use bevy_reflect::prelude::*;
 
 use crate::math::{Scalar, Vector};
 
-/// The settings of [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin), a group of gizmos. `None` draws nothing of a kind.
+/// The settings of [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin), a group of gizmos. `None` draws
+/// nothing of a kind.
 ///
-/// Change it in the `GizmoConfigStore`, or insert it when the app is built. The config of the group turns all drawing
-/// on and off, and has the width of lines.
+/// Change it in the `GizmoConfigStore`, or insert it when the app is built. The config of the group turns all
+/// drawing on and off, and has the width of lines.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -38,17 +39,18 @@ pub struct PhysicsGizmos {
     pub axis_lengths: Option<Vector>,
     /// Color of the bounding boxes of colliders. Not drawn by default.
     pub aabb_color: Option<Color>,
-    /// Color of the outlines of colliders. Orange by default. The next three replace it for colliders of a kind, so that it is
-    /// left for those of dynamic bodies.
+    /// Color of the outlines of colliders. Orange by default. The next three replace it for colliders of a
+    /// kind, so that it is left for those of dynamic bodies.
     pub collider_color: Option<Color>,
-    /// Color of the outlines on kinematic bodies, instead of [`collider_color`](Self::collider_color). Blue by default.
+    /// Color of the outlines on kinematic bodies, instead of [`collider_color`](Self::collider_color).
+    /// Blue by default.
     pub kinematic_color: Option<Color>,
     /// Color of the outlines on static bodies, and of colliders without a body. Gray by default.
     pub static_color: Option<Color>,
     /// Color of the outlines of sensors, on whatever body. Green by default.
     pub sensor_color: Option<Color>,
-    /// Factors of hue, saturation, lightness and alpha for colors of sleeping bodies. `[1.0, 1.0, 0.4, 1.0]` by default:
-    /// they are darker.
+    /// Factors of hue, saturation, lightness and alpha for colors of sleeping bodies. `[1.0, 1.0, 0.4, 1.0]`
+    /// by default: they are darker.
     pub sleeping_color_multiplier: Option<[f32; 4]>,
     /// Color of contact points. Not drawn by default.
     pub contact_point_color: Option<Color>,
@@ -56,8 +58,8 @@ pub struct PhysicsGizmos {
     pub contact_normal_color: Option<Color>,
     /// Length of contact normals.
     pub contact_normal_scale: ContactGizmoScale,
-    /// The longest that normals with [`ContactGizmoScale::Scaled`] are drawn. 1 by default: the load of a large body would
-    /// reach out of the picture.
+    /// The longest that normals with [`ContactGizmoScale::Scaled`] are drawn. 1 by default: the load of a
+    /// large body would reach out of the picture.
     pub max_contact_normal_length: Option<Scalar>,
     /// Color of the lines from bodies to the anchors of joints. Pink by default.
     pub joint_anchor_color: Option<Color>,
@@ -216,7 +218,8 @@ impl PhysicsGizmos {
         Self { collider_color: Some(color), ..self }.with_kind_colors(None, None, None)
     }
 
-    /// Sets the colors of outlines on kinematic bodies, on static ones and of sensors. `None` is the color of all others.
+    /// Sets the colors of outlines on kinematic bodies, on static ones and of sensors. `None` is the color
+    /// of all others.
     pub fn with_kind_colors(
         mut self,
         kinematic: Option<Color>,
@@ -369,7 +372,8 @@ pub struct DebugRender {
     pub aabb_color: Option<Color>,
     /// Color of the outline. Orange by default.
     pub collider_color: Option<Color>,
-    /// Factors of hue, saturation, lightness and alpha while the body sleeps. `[1.0, 1.0, 0.4, 1.0]` by default.
+    /// Factors of hue, saturation, lightness and alpha while the body sleeps.
+    /// `[1.0, 1.0, 0.4, 1.0]` by default.
     pub sleeping_color_multiplier: Option<[f32; 4]>,
     /// Whether the mesh of the entity is hidden. False by default.
     pub hide_mesh: bool,

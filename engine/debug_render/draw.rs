@@ -65,8 +65,8 @@ impl DrawnPoseItem<'_, '_> {
     }
 }
 
-/// The rotation of an entity as it is drawn. Bevy's decomposition of a mirrored transform has the mirror at the x axis,
-/// and a turn for the rest. Colliders have the mirror where the scale has it.
+/// The rotation of an entity as it is drawn. Bevy's decomposition of a mirrored transform has the mirror at
+/// the x axis, and a turn for the rest. Colliders have the mirror where the scale has it.
 fn drawn_rotation(transform: &GlobalTransform, place: Option<&ColliderTransform>) -> Quat {
     let scale = place.map_or(Vec3::ONE, |place| dim::point(place.scale));
     if scale.cmpge(Vec3::ZERO).all() {

@@ -20,8 +20,8 @@ use crate::{
 
 /// Draws points, shapes and casts of physics with `Gizmos<PhysicsGizmos>`.
 ///
-/// Needs the group only, not [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin): `app.init_gizmo_group::<PhysicsGizmos>()`.
-/// Nothing is drawn at a pose that is not finite.
+/// Needs the group only, not [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin):
+/// `app.init_gizmo_group::<PhysicsGizmos>()`. Nothing is drawn at a pose that is not finite.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -48,7 +48,8 @@ pub trait PhysicsGizmoExt {
         color: Color,
     );
 
-    /// Draws lines between pairs of vertices that are in the frame of a pose. Indices out of range are left out.
+    /// Draws lines between pairs of vertices that are in the frame of a pose. Indices out of range
+    /// are left out.
     fn draw_polyline(
         &mut self,
         vertices: &[Vector],

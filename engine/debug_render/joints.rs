@@ -159,7 +159,8 @@ impl Pen<'_, '_, '_> {
     }
 }
 
-/// Adds an arc about an axis from the angles `min` to `max`, at most a full turn, and the lines from the centre to its ends.
+/// Adds an arc about an axis from the angles `min` to `max`, at most a full turn, and the lines from the
+/// centre to its ends.
 pub(super) fn push_sector(lines: &mut Strips, axis: Vec3, zero: Vec3, min: f32, max: f32) {
     let span = (max - min).min(TAU);
     if !(min.is_finite() && span >= 0.0) {
@@ -193,7 +194,8 @@ pub(super) fn draw_kind(
     }
 }
 
-/// Implements drawing for kinds of joints, and lists their systems. Each comes with what draws its axes and limits.
+/// Implements drawing for kinds of joints, and lists their systems. Each comes with what draws its
+/// axes and limits.
 macro_rules! drawn_kinds {
     ($(#[$doc:meta])* $list:ident: $($joint:ident => |$self:ident, $drawn:pat_param, $pen:pat_param| $draw:expr;)+) => {
         $(#[$doc])*

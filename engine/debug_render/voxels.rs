@@ -79,7 +79,8 @@ fn around(cell: Cell, axis: usize, step: i64) -> Vec<Cell> {
     out
 }
 
-/// Whether the surface bends at the edge that begins at a point of the grid. In the plane: whether it is the surface.
+/// Whether the surface bends at the edge that begins at a point of the grid. In the plane: whether it
+/// is the surface.
 fn bends(cells: &BTreeSet<Cell>, at: Cell, axis: usize) -> bool {
     let full: Vec<bool> = around(at, axis, -1).iter().map(|cell| cells.contains(cell)).collect();
     match full[..] {

@@ -1,11 +1,13 @@
 //! Timers and counters of physics, as resources and as diagnostics of Bevy.
 //!
-//! Each part of the engine has a resource with what it counted and timed in the last step: [`CollisionDiagnostics`],
-//! [`SolverDiagnostics`], [`ColliderTreeDiagnostics`], [`SpatialQueryDiagnostics`]. They are always there.
+//! Each part of the engine has a resource with what it counted and timed in the last step:
+//! [`CollisionDiagnostics`], [`SolverDiagnostics`], [`ColliderTreeDiagnostics`], [`SpatialQueryDiagnostics`].
+//! They are always there.
 //!
-//! With feature `bevy_diagnostic`, `PhysicsDiagnosticsPlugin` writes them to Bevy's `DiagnosticsStore` after each step, with
-//! totals and numbers of entities. With Bevy's feature `trace` every part of a step is a span: each is a system of
-//! [`PhysicsSchedule`](crate::schedule::PhysicsSchedule). With feature `diagnostic_ui`, `PhysicsDiagnosticsUiPlugin` shows them in the window.
+//! With feature `bevy_diagnostic`, `PhysicsDiagnosticsPlugin` writes them to Bevy's `DiagnosticsStore` after
+//! each step, with totals and numbers of entities. With Bevy's feature `trace` every part of a step is a
+//! span: each is a system of [`PhysicsSchedule`](crate::schedule::PhysicsSchedule). With feature
+//! `diagnostic_ui`, `PhysicsDiagnosticsUiPlugin` shows them in the window.
 //!
 //! ```
 //! # use avian::{diagnostics::AppDiagnosticsExt, prelude::*};

@@ -1,6 +1,7 @@
 //! Paths of timers and counters.
 
-/// Names the timers and counters of a resource, as constants and for [`PhysicsDiagnostics`](super::PhysicsDiagnostics).
+/// Names the timers and counters of a resource, as constants and for
+/// [`PhysicsDiagnostics`](super::PhysicsDiagnostics).
 ///
 /// `reset` is the system that prepares the resource for a step.
 macro_rules! diagnostic_paths {

@@ -3,8 +3,9 @@
 use super::{PhysicsEntityDiagnosticsPlugin, PhysicsTotalDiagnosticsPlugin, registry::registered};
 use bevy_app::{App, Plugin};
 
-/// Writes the timers and counters of physics to Bevy's [`DiagnosticsStore`](bevy_diagnostic::DiagnosticsStore) after each
-/// step. Adds [`PhysicsTotalDiagnosticsPlugin`] and [`PhysicsEntityDiagnosticsPlugin`].
+/// Writes the timers and counters of physics to Bevy's
+/// [`DiagnosticsStore`](bevy_diagnostic::DiagnosticsStore) after each step. Adds
+/// [`PhysicsTotalDiagnosticsPlugin`] and [`PhysicsEntityDiagnosticsPlugin`].
 ///
 /// To log them, add Bevy's `LogDiagnosticsPlugin`; to show them in the window, `PhysicsDiagnosticsUiPlugin`.
 pub struct PhysicsDiagnosticsPlugin;

@@ -46,8 +46,8 @@ pub trait PhysicsDiagnostics: Default + Resource<Mutability = Mutable> {
 
 /// Adds timers and counters to an app.
 pub trait AppDiagnosticsExt {
-    /// Adds the resource `T`, resets it before each step, and writes it to Bevy's diagnostics after each step if
-    /// `PhysicsDiagnosticsPlugin` is added, before or after this call. A second call has no effect.
+    /// Adds the resource `T`, resets it before each step, and writes it to Bevy's diagnostics after each step
+    /// if `PhysicsDiagnosticsPlugin` is added, before or after this call. A second call has no effect.
     fn register_physics_diagnostics<T: PhysicsDiagnostics>(&mut self);
 }
 

@@ -80,8 +80,8 @@ pub(crate) struct Census<'w, 's> {
     commands: Commands<'w, 's>,
 }
 
-/// Drains the queue: lost ids are removed, then queued bodies are added, removed or retyped, then queued colliders. Ids
-/// follow the order in which entities were queued, not the order of entities.
+/// Drains the queue: lost ids are removed, then queued bodies are added, removed or retyped, then queued
+/// colliders. Ids follow the order in which entities were queued, not the order of entities.
 pub(crate) fn drain_lifecycle(
     mut queue: ResMut<LifecycleQueue>,
     sleep: Option<Res<SleepRequests>>,
@@ -98,8 +98,8 @@ pub(crate) fn drain_lifecycle(
     let Contacts { changed, met, parted, .. } = &mut *tables.contacts;
     [changed, met, parted].into_iter().for_each(BitSet::clear);
     remove_lost(&mut queue, &mut tables, &mut joints, &mut census);
-    // Includes ids of entities that were despawned since the last step, so that a level that is replaced at once gets
-    // the same ids.
+    // Includes ids of entities that were despawned since the last step, so that a level that is replaced at
+    // once gets the same ids.
     tables.bodies.table.ids.recycle();
     tables.colliders.table.recycle_ids();
     tables.contacts.table.recycle_ids();
@@ -176,7 +176,9 @@ fn remove_collider(id: u32, tables: &mut Tables) {
 
 /// Removes the contacts of a collider that may not be any more.
 fn drop_forbidden(id: u32, tables: &mut Tables) {
-    tables.end_contacts(id, |link, contact| !may_collide(link.bodies, link.colliders, contact.colliders));
+    tables.end_contacts(id, |manager, contact| {
+        !may_collide(manager.bodies, manager.colliders, contact.colliders)
+    });
 }
 
 pub(super) fn kind_of(body: &RigidBody) -> BodyKind {
@@ -237,7 +239,7 @@ impl Census<'_, '_> {
                     *kept = Velocity::default();
                 }
                 put(&mut tables.bodies.seen, id, said_pose(position, rotation), WorldPose::IDENTITY);
-                tables.link().enter(id);
+                tables.contact_manager().enter(id);
                 if let Ok(mut component) = self.body_ids.get_mut(entity) {
                     component.0 = id;
                 }
@@ -247,7 +249,7 @@ impl Census<'_, '_> {
             (Some((body, ..)), id) => {
                 let kind = kind_of(body);
                 if tables.bodies.table[id].kind != kind {
-                    tables.link().retype(id, kind);
+                    tables.contact_manager().retype(id, kind);
                     move_to_tree(id, kind, tables);
                     let colliders = tables.colliders.table.of_body(id, &tables.bodies.table);
                     for collider in colliders.collect::<Vec<_>>() {
@@ -293,7 +295,7 @@ impl Census<'_, '_> {
                 queue.bereft.insert(entity);
             }
         }
-        tables.link().leave(id);
+        tables.contact_manager().leave(id);
         let entity = core::mem::replace(&mut tables.bodies.entities[id as usize], Entity::PLACEHOLDER);
         if let Ok(mut component) = self.body_ids.get_mut(entity) {
             component.0 = NONE;
@@ -372,7 +374,7 @@ impl Census<'_, '_> {
             let id = colliders.table.add(def, world, &mut bodies.table);
             colliders.name(id, entity);
             // Contacts of a sleeping body are not computed, so the body wakes.
-            tables.link().wake_body(body);
+            tables.contact_manager().wake_body(body);
             id
         };
         let kind = match body {
@@ -402,7 +404,7 @@ impl Census<'_, '_> {
         // A new collider has no contacts, and a level may be spawned asleep.
         if hooked != [filters, modifies] && colliders.table[id].first_contact != NONE {
             let body = colliders.table.body(id);
-            tables.link().wake_with_touching(body);
+            tables.contact_manager().wake_with_touching(body);
         }
         let Colliders { reporting, tracking, hitting, filtering, modifying, .. } = &mut *tables.colliders;
         for (set, is_in) in [
@@ -424,8 +426,8 @@ impl Census<'_, '_> {
     }
 }
 
-/// Changes a collider in place, if its definition differs. Bodies that touch it wake, and pairs that its new layers
-/// forbid are removed.
+/// Changes a collider in place, if its definition differs. Bodies that touch it wake, and pairs that its new
+/// layers forbid are removed.
 fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
     let body = def.body;
     let old = &tables.colliders.table[id].def;
@@ -434,15 +436,15 @@ fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
     }
     // A collider that becomes or ceases to be a sensor needs other pairs.
     let repaired = old.layers != def.layers || old.flags != def.flags;
-    let mut link = tables.link();
-    link.wake_with_touching(body);
-    link.colliders.redefine(id, def, link.bodies);
+    let mut manager = tables.contact_manager();
+    manager.wake_with_touching(body);
+    manager.colliders.redefine(id, def, manager.bodies);
     if repaired {
         drop_forbidden(id, tables);
         // New partners are found as for a collider that moved.
         tables.colliders.moved.insert(id);
     }
-    tables.link().reflag_of_collider(id);
+    tables.contact_manager().reflag_of_collider(id);
 }
 
 pub(super) fn tree_of(kind: BodyKind) -> TreeKind {

@@ -1,8 +1,8 @@
 //! Components with the id of a body or collider in the tables.
 //!
 //! Only the drain assigns ids, by writing to an existing component. Ids are valid only in their world, so the
-//! components have no reflection and are not cloned. An inserted id is ignored: the entity gets its own in the next
-//! step.
+//! components have no reflection and are not cloned. An inserted id is ignored: the entity gets its own in
+//! the next step.
 
 use bevy_ecs::{lifecycle::HookContext, prelude::*, world::DeferredWorld};
 use kernel::table::NONE;

@@ -1,8 +1,8 @@
 //! The life cycle: the only way in which bodies and colliders enter and leave the simulation.
 //!
-//! Observers only record *which* entities may have changed, and which ids lost their component. Once per step the queue
-//! is drained: the components of each queued entity are compared with the tables, and differences applied. So the order
-//! of changes does not matter, and changes that cancel each other cost nothing.
+//! Observers only record *which* entities may have changed, and which ids lost their component. Once per step
+//! the queue is drained: the components of each queued entity are compared with the tables, and differences
+//! applied. So the order of changes does not matter, and changes that cancel each other cost nothing.
 //!
 //! ```text
 //!   body       absent ──enters──▶ awake ⇄ asleep ──leaves──▶ absent        (static: neither awake nor asleep)
@@ -93,8 +93,8 @@ pub(crate) struct NoteLog {
 /// Logs with fewer entries than this are not started anew.
 const SHORT: usize = 1024;
 
-/// A log is started anew when it has this number of entries for each entity in the queue. Fewer let queries read the queue more
-/// often, more take more memory while physics is paused.
+/// A log is started anew when it has this number of entries for each entity in the queue. Fewer let queries
+/// read the queue more often, more take more memory while physics is paused.
 const NOTES: usize = 8;
 
 impl NoteLog {
@@ -219,7 +219,8 @@ type OfColliders = (
     Disabled,
 );
 
-/// Queues entities that come by a component, or lose it. One observer for many components: each is compiled like a system.
+/// Queues entities that come by a component, or lose it. One observer for many components: each is compiled
+/// like a system.
 fn follow<Come: EntityEvent, B: Bundle>(app: &mut App, note: fn(Entity) -> Note) {
     app.add_observer(move |on: On<Come, B>, mut queue: ResMut<LifecycleQueue>| {
         queue.note(note(on.event_target()));
@@ -270,7 +271,8 @@ pub(crate) fn note_changed_colliders(
     }
 }
 
-/// Removes the id of a body whose component was removed or overwritten. An entity that is still a body enters again.
+/// Removes the id of a body whose component was removed or overwritten. An entity that is still a body
+/// enters again.
 fn lose_body(
     on: On<Discard, BodyId>,
     ids: Query<&BodyId, Allow<Disabled>>,
@@ -285,8 +287,8 @@ fn lose_body(
     }
 }
 
-/// Removes the id of a collider whose component was removed or overwritten. An entity that is still a collider enters
-/// again.
+/// Removes the id of a collider whose component was removed or overwritten. An entity that is still a
+/// collider enters again.
 fn lose_collider(
     on: On<Discard, ColliderId>,
     ids: Query<&ColliderId, Allow<Disabled>>,
@@ -361,9 +363,9 @@ mod tests {
         ]
     }
 
-    /// A hundred bodies that live for one frame each, with a child collider, for 300 frames without a step. Queues hold
-    /// only a few entries for each entity alive at one time, with or without the schedule that hosts physics, and end
-    /// up empty.
+    /// A hundred bodies that live for one frame each, with a child collider, for 300 frames without a step.
+    /// Queues hold only a few entries for each entity alive at one time, with or without the schedule that
+    /// hosts physics, and end up empty.
     #[test]
     fn issue_queues_grew_with_all_that_lived_while_physics_was_paused() {
         for hosted in [false, true] {

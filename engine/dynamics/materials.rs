@@ -138,8 +138,8 @@ type SurfaceParts = (
 /// The filter for entities with one of them.
 type HasSurface = Or<(With<Friction>, With<Restitution>, With<CollisionMargin>, With<SpeculativeMargin>)>;
 
-/// Colliders in the tables, and their bodies, that lost a component of their surface since the last step, in the order
-/// of removal. Bevy's own record of removals lasts for two frames, and steps may be further apart.
+/// Colliders in the tables, and their bodies, that lost a component of their surface since the last step, in
+/// the order of removal. Bevy's own record of removals lasts for two frames, and steps may be further apart.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct LostSurfaces(EntityIndexSet);
 
@@ -205,11 +205,11 @@ pub(crate) fn refresh_surfaces(
             if !reaches && def.material == material && def.facets == facets {
                 continue;
             }
-            let mut link = tables.link();
+            let mut manager = tables.contact_manager();
             // What rests on the surface may slide or bounce from now on.
-            link.wake_with_touching(link.colliders.body(id.0));
-            link.set_material(id.0, material);
-            link.set_facets(id.0, facets);
+            manager.wake_with_touching(manager.colliders.body(id.0));
+            manager.set_material(id.0, material);
+            manager.set_facets(id.0, facets);
             if reaches {
                 let Tables { bodies, colliders, .. } = &mut tables;
                 let colliders = &mut **colliders;

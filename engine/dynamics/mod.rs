@@ -1,5 +1,5 @@
-//! Dynamics: [rigid bodies](rigid_body), [joints], [gravity and integration](integrator), [continuous collision
-//! detection](ccd) and the [solver].
+//! Dynamics: [rigid bodies](rigid_body), [joints], [gravity and integration](integrator), [continuous
+//! collision detection](ccd) and the [solver].
 
 pub mod ccd;
 pub(crate) mod drain;

@@ -1,5 +1,5 @@
-//! Quarantine of bodies whose pose or velocity is not finite: the body is reset to its last pose, stopped and disabled,
-//! with one warning, before NaN spreads.
+//! Quarantine of bodies whose pose or velocity is not finite: the body is reset to its last pose, stopped and
+//! disabled, with one warning, before NaN spreads.
 
 use bevy_ecs::prelude::*;
 use bevy_log::warn;

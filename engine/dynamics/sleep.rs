@@ -21,12 +21,12 @@ use crate::{
     schedule::Physics,
 };
 
-/// Minimum number of steps at rest before a body sleeps. A body at the top of its flight, or one that was just
-/// released, is slow for a moment: with a threshold of 0.15 m/s for two steps of 1/60 s.
+/// Minimum number of steps at rest before a body sleeps. A body at the top of its flight, or one that was
+/// just released, is slow for a moment: with a threshold of 0.15 m/s for two steps of 1/60 s.
 const STEPS_OF_REST: f32 = 4.0;
 
-/// Bodies whose [`Sleeping`] component was added or removed since the last step, by the app or the engine, and bodies
-/// that got [`SleepingDisabled`].
+/// Bodies whose [`Sleeping`] component was added or removed since the last step, by the app or the engine,
+/// and bodies that got [`SleepingDisabled`].
 #[derive(Resource, Default)]
 pub(crate) struct SleepRequests {
     sleep: Noted,
@@ -111,8 +111,8 @@ pub(crate) fn watch_sleeping(app: &mut App) {
         });
 }
 
-/// Records bodies that the app puts to sleep. Bodies that sleep already are skipped: the engine inserted the component,
-/// and they may wake before the next step.
+/// Records bodies that the app puts to sleep. Bodies that sleep already are skipped: the engine inserted the
+/// component, and they may wake before the next step.
 fn ask_to_sleep(
     on: On<Add, Sleeping>,
     ids: Query<&BodyId, Allow<Disabled>>,
@@ -128,7 +128,8 @@ fn ask_to_sleep(
     }
 }
 
-/// Applies the requests of the app: puts the islands of bodies to sleep or wakes them. Bodies that must not sleep wake.
+/// Applies the requests of the app: puts the islands of bodies to sleep or wakes them. Bodies that must
+/// not sleep wake.
 pub(crate) fn follow_requests(
     mut requests: ResMut<SleepRequests>,
     ids: Query<(&BodyId, Has<Sleeping>, Has<SleepingDisabled>)>,
@@ -139,9 +140,9 @@ pub(crate) fn follow_requests(
         // The component may have been added and removed again. Its state now counts.
         if let Ok((id, true, _)) = ids.get(entity)
             && id.0 != NONE
-            && let Some(island) = tables.link().island_of(id.0)
+            && let Some(island) = tables.contact_manager().island_of(id.0)
         {
-            tables.link().sleep_island(island);
+            tables.contact_manager().sleep_island(island);
         }
     }
     let bodies = &mut *tables.bodies;
@@ -158,7 +159,7 @@ pub(crate) fn follow_requests(
         if let Ok((id, false, _) | (id, true, true)) = ids.get(entity)
             && id.0 != NONE
         {
-            tables.link().wake_body(id.0);
+            tables.contact_manager().wake_body(id.0);
         }
     }
 }
@@ -181,14 +182,14 @@ pub(crate) fn sleep_islands(
         islands.0.split(*island);
     }
     for island in scan.0.sleepers().to_vec() {
-        if !tables.link().is_carried(island) {
-            tables.link().sleep_island(island);
+        if !tables.contact_manager().is_carried(island) {
+            tables.contact_manager().sleep_island(island);
         }
     }
 }
 
-/// Adds and removes [`Sleeping`] where a body fell asleep or woke. Observers of one body's `Sleeping` may despawn the
-/// next body before its turn.
+/// Adds and removes [`Sleeping`] where a body fell asleep or woke. Observers of one body's `Sleeping` may
+/// despawn the next body before its turn.
 pub(crate) fn mirror_sleeping(mut tables: Tables, sleeping: Query<Has<Sleeping>>, mut commands: Commands) {
     let bodies = &mut *tables.bodies;
     for id in core::mem::take(&mut bodies.table.flipped) {

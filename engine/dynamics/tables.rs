@@ -1,9 +1,9 @@
-//! State that persists between steps and is no component: the kernel's tables, as resources. Clones of them are a
-//! snapshot.
+//! State that persists between steps and is no component: the kernel's tables, as resources. Clones of them
+//! are a snapshot.
 
 use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemParam};
 use kernel::{
-    contact::{Contact, ContactFlags, ContactTable, Link, Status},
+    contact::{Contact, ContactFlags, ContactManager, ContactTable, Status},
     data::{BitSet, PairSet},
     graph::{ColorGraph, Islands},
     math::WorldPose,
@@ -23,14 +23,15 @@ pub(crate) struct Bodies {
     pub(crate) table: BodyTable,
     /// The entity of each id.
     pub(crate) entities: Vec<Entity>,
-    /// The last pose of each id's components, as read or written by the engine. A different pose is a change by the
-    /// app. (The table's pose, of the centre of mass, would differ in the last bit.)
+    /// The last pose of each id's components, as read or written by the engine. A different pose is a change
+    /// by the app. (The table's pose, of the centre of mass, would differ in the last bit.)
     pub(crate) seen: Vec<WorldPose>,
-    /// Velocities of bodies that fell asleep in motion, by id, as long as needed. Components keep them, and a body
-    /// wakes with its velocity, so that a stack continues as if it had not slept. In the kernel a sleeping body has no
-    /// velocity, since that would sweep its box and find contacts that wake it.
+    /// Velocities of bodies that fell asleep in motion, by id, as long as needed. Components keep them, and a
+    /// body wakes with its velocity, so that a stack continues as if it had not slept. In the kernel a
+    /// sleeping body has no velocity, since that would sweep its box and find contacts that wake it.
     pub(crate) kept: Vec<Velocity>,
-    /// Tick of the engine's last write of poses and velocities. Components with this tick were not changed by the app.
+    /// Tick of the engine's last write of poses and velocities. Components with this tick were not
+    /// changed by the app.
     pub(crate) written: Tick,
     /// Tick of the last read of poses in this step. Newer changes were made by the app within the step.
     pub(crate) read: Tick,
@@ -144,8 +145,8 @@ pub(crate) struct Contacts {
     pub(crate) changed: BitSet,
     /// Contacts that have points and did not touch yet: their colliders come near, or pass by.
     pub(crate) nearing: BitSet,
-    /// Whether the narrow phase of this step has begun, and its impulses are not known: all contacts with points count as
-    /// touching.
+    /// Whether the narrow phase of this step has begun, and its impulses are not known: all contacts with
+    /// points count as touching.
     pub(crate) is_before_solver: bool,
     /// Contacts that began to touch in this step, after the solver.
     pub(crate) met: BitSet,
@@ -186,33 +187,37 @@ pub(crate) struct Tables<'w> {
 
 impl Tables<'_> {
     /// The kernel's interface for changes of contacts.
-    pub(crate) fn link(&mut self) -> Link<'_> {
-        self.link_and_reporter().0
+    pub(crate) fn contact_manager(&mut self) -> ContactManager<'_> {
+        self.contact_manager_and_reporter().0
     }
 
     /// The same, and what notes collisions that begin and end.
-    pub(crate) fn link_and_reporter(&mut self) -> (Link<'_>, Reporter<'_>) {
+    pub(crate) fn contact_manager_and_reporter(&mut self) -> (ContactManager<'_>, Reporter<'_>) {
         let Contacts { table: contacts, colors, reports, nearing, .. } = &mut *self.contacts;
         let Colliders { table: colliders, entities, reporting, tracking, .. } = &mut *self.colliders;
         let Bodies { table: bodies, entities: body_entities, .. } = &mut *self.bodies;
         let islands = self.islands.as_mut().map(|i| &mut i.0);
         let reporter =
             Reporter { bodies: body_entities, colliders: entities, reporting, tracking, reports, nearing };
-        (Link { bodies, colliders, contacts, colors, islands }, reporter)
+        (ContactManager { bodies, colliders, contacts, colors, islands }, reporter)
     }
 
     /// Removes the contacts of a collider that `is_gone` names, and notes the collisions that end.
-    pub(crate) fn end_contacts(&mut self, collider: u32, is_gone: impl Fn(&Link, &Contact) -> bool) {
-        let (mut link, mut reporter) = self.link_and_reporter();
-        let all = link.contacts.of_collider(collider, link.colliders);
-        let mut gone: Vec<u32> = all.filter(|id| is_gone(&link, link.contacts.get(*id))).collect();
+    pub(crate) fn end_contacts(
+        &mut self,
+        collider: u32,
+        is_gone: impl Fn(&ContactManager, &Contact) -> bool,
+    ) {
+        let (mut manager, mut reporter) = self.contact_manager_and_reporter();
+        let all = manager.contacts.of_collider(collider, manager.colliders);
+        let mut gone: Vec<u32> = all.filter(|id| is_gone(&manager, manager.contacts.get(*id))).collect();
         gone.sort_unstable();
         for id in gone {
-            let contact = link.contacts.get(id);
+            let contact = manager.contacts.get(id);
             if contact.flags.has(ContactFlags::TOUCHING) {
                 reporter.note_points(id, contact, Status::Ended);
             }
-            link.destroy(id);
+            manager.destroy(id);
         }
     }
 }
@@ -263,8 +268,8 @@ pub(crate) struct Reporter<'a> {
 }
 
 impl Reporter<'_> {
-    /// Notes that a contact got its first points, or lost its last ones. Returns whether its colliders do not touch any
-    /// more.
+    /// Notes that a contact got its first points, or lost its last ones. Returns whether its colliders do not
+    /// touch any more.
     pub(crate) fn note_points(&mut self, id: u32, contact: &Contact, status: Status) -> bool {
         match status {
             Status::Began => _ = self.nearing.insert(id),
@@ -304,8 +309,8 @@ impl Reporter<'_> {
     }
 }
 
-/// Whether two colliders of different bodies may form a contact: both are active, their layers interact, and one of them
-/// belongs to a dynamic or kinematic body. Of two without a body one must be a sensor.
+/// Whether two colliders of different bodies may form a contact: both are active, their layers interact, and
+/// one of them belongs to a dynamic or kinematic body. Of two without a body one must be a sensor.
 pub(crate) fn may_collide(bodies: &BodyTable, colliders: &ColliderTable, pair: [u32; 2]) -> bool {
     let [a, b] = pair.map(|id| &colliders[id].def);
     let moves = |body: u32| body != NONE && bodies[body].kind != BodyKind::Static;
@@ -314,8 +319,8 @@ pub(crate) fn may_collide(bodies: &BodyTable, colliders: &ColliderTable, pair: [
     active && (moves(a.body) || moves(b.body) || detects) && a.layers.interacts_with(b.layers)
 }
 
-/// Whether looking up the wanted entities is cheaper than iterating the queries: they are less than a quarter of all. `all`
-/// are the size hints of the queries.
+/// Whether looking up the wanted entities is cheaper than iterating the queries: they are less than a quarter
+/// of all. `all` are the size hints of the queries.
 pub(crate) fn is_minority<const N: usize>(wanted: usize, all: [(usize, Option<usize>); N]) -> bool {
     4 * wanted < all.iter().map(|hint| hint.1.unwrap_or(0)).sum()
 }

@@ -1,9 +1,10 @@
 //! Keeps physics independent of the transforms that are drawn between ticks.
 //!
-//! Easing overwrites `Transform`, the very component that physics reads. Before the first tick of a frame, the values
-//! of the last tick are put back where the `Transform` still has the bits that easing wrote. All else was written by
-//! the app: it stays, and easing starts anew from it. This is decided for each axis of translation and scale, and for
-//! the rotation as a whole. So sorting sprites by `z` or pulsing a scale moves no body.
+//! Easing overwrites `Transform`, the very component that physics reads. Before the first tick of a frame,
+//! the values of the last tick are put back where the `Transform` still has the bits that easing wrote. All
+//! else was written by the app: it stays, and easing starts anew from it. This is decided for each axis of
+//! translation and scale, and for the rotation as a whole. So sorting sprites by `z` or pulsing a scale
+//! moves no body.
 
 use bevy_app::{App, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::{
@@ -28,7 +29,8 @@ pub(super) struct Eased {
     drawn: Transform,
 }
 
-/// Adds the systems, given those of the easing plugin. These are private, so they are ordered by their own sets.
+/// Adds the systems, given those of the easing plugin. These are private, so they are ordered by
+/// their own sets.
 pub(super) fn add_systems(app: &mut App, easing: &[SystemKey]) {
     // Registration fails only if the requirement exists already.
     let _ = app.try_register_required_components::<TranslationEasingState, Eased>();
@@ -96,7 +98,8 @@ impl DrawnItem<'_, '_> {
     }
 }
 
-/// Undoes easing on the axes that have the drawn bits. On the others, both ends of easing become what the app wrote.
+/// Undoes easing on the axes that have the drawn bits. On the others, both ends of easing become what
+/// the app wrote.
 fn put_back_axes(now: &mut Vec3, tick: Vec3, drawn: Vec3, mut ends: [&mut Option<Vec3>; 2]) {
     for axis in 0..3 {
         if now[axis].to_bits() == drawn[axis].to_bits() {

@@ -34,17 +34,18 @@ use bevy_transform_interpolation::{
 use self::velocity::{AngVelSource, LinVelSource};
 use crate::dynamics::rigid_body::RigidBody;
 
-/// Eases the transforms of rigid bodies between steps, if physics runs in a fixed schedule and frames are drawn more
-/// often.
+/// Eases the transforms of rigid bodies between steps, if physics runs in a fixed schedule and frames are
+/// drawn more often.
 ///
-/// *Interpolation* draws bodies between the poses of the last two steps: smooth and correct, but one step late.
-/// *Extrapolation* draws them ahead of the last step, by their velocity: without delay, but they jump at collisions.
-/// Both are off unless an entity has [`TransformInterpolation`] or [`TransformExtrapolation`], or a constructor of this
-/// plugin enables them for all bodies. [`NoTransformEasing`] and its siblings exclude an entity.
-/// [`TransformHermiteEasing`] uses velocities as well as positions.
+/// *Interpolation* draws bodies between the poses of the last two steps: smooth and correct, but one step
+/// late. *Extrapolation* draws them ahead of the last step, by their velocity: without delay, but they jump
+/// at collisions. Both are off unless an entity has [`TransformInterpolation`] or [`TransformExtrapolation`],
+/// or a constructor of this plugin enables them for all bodies. [`NoTransformEasing`] and its siblings
+/// exclude an entity. [`TransformHermiteEasing`] uses velocities as well as positions.
 ///
-/// Apps may write to the `Transform` of an eased body in any schedule. Writing `z` in 2D, or the scale, moves no body.
-/// Writing the rotation or a spatial axis sets that part of the pose; the other parts go on as without the write.
+/// Apps may write to the `Transform` of an eased body in any schedule. Writing `z` in 2D, or the scale, moves
+/// no body. Writing the rotation or a spatial axis sets that part of the pose; the other parts go on as
+/// without the write.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -143,8 +144,8 @@ impl Plugin for PhysicsInterpolationPlugin {
     }
 }
 
-/// Adds systems that are skipped while no entity is eased. Scheduling two dozen systems would be most of the cost of an
-/// empty world. Returns those in [`RunFixedMainLoop`].
+/// Adds systems that are skipped while no entity is eased. Scheduling two dozen systems would be most of the
+/// cost of an empty world. Returns those in [`RunFixedMainLoop`].
 fn skip_while_nothing_eases(app: &mut App, add_systems: impl FnOnce(&mut App)) -> Vec<SystemKey> {
     let eased = [FixedFirst.intern(), FixedLast.intern(), RunFixedMainLoop.intern()];
     let keys = |app: &App| {

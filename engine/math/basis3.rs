@@ -2,8 +2,8 @@
 
 use super::{DIM, Matrix3, Quaternion, Vector};
 
-/// A rotation that maps the x axis to `axis`, which may have any length. The identity for a zero vector. The rotation
-/// about `axis` is unspecified, but depends on `axis` only.
+/// A rotation that maps the x axis to `axis`, which may have any length. The identity for a zero vector. The
+/// rotation about `axis` is unspecified, but depends on `axis` only.
 pub fn orthonormal_basis_from_vec(axis: Vector) -> Quaternion {
     match axis.try_normalize() {
         Some(x) => {

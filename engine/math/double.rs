@@ -1,4 +1,5 @@
-//! `f64` as the precision of the public API: the scalar, the vectors and matrices, and the conversions into it.
+//! `f64` as the precision of the public API: the scalar, the vectors and matrices, and the
+//! conversions into it.
 
 use bevy_math::{DMat3, DQuat, DVec2, DVec3, Mat3, Quat, Vec2, Vec3};
 use glam_matrix_extras::{SymmetricDMat2, SymmetricDMat3, SymmetricMat2, SymmetricMat3};

@@ -1,5 +1,5 @@
-//! Numeric types of the public API: precision and dimension by alias, conversions between precisions and to the
-//! kernel's types, and a few matrix operations that glam lacks.
+//! Numeric types of the public API: precision and dimension by alias, conversions between precisions and to
+//! the kernel's types, and a few matrix operations that glam lacks.
 //!
 //! ```
 //! # use avian::math::*;
@@ -92,8 +92,8 @@ impl AsF32 for Vec4 {
 
 /// The reciprocal of quantities whose infinity is stored as zero, such as an inverse mass.
 pub trait RecipOrZero {
-    /// `1 / self`, or zero if that is not finite: for zero, infinity, NaN, and numbers too small to invert. By
-    /// component for vectors.
+    /// `1 / self`, or zero if that is not finite: for zero, infinity, NaN, and numbers too small to invert.
+    /// By component for vectors.
     #[must_use]
     fn recip_or_zero(self) -> Self;
 }
@@ -123,12 +123,12 @@ recip_or_zero! { f32, f64; Vec2 { x, y }, DVec2 { x, y }, Vec3 { x, y, z }, DVec
 pub trait MatExt {
     /// The type of the entries.
     type Scalar;
-    /// The inverse, or the zero matrix if there is none: for a singular matrix, or one with entries that are infinite
-    /// or NaN.
+    /// The inverse, or the zero matrix if there is none: for a singular matrix, or one with entries that are
+    /// infinite or NaN.
     #[must_use]
     fn inverse_or_zero(self) -> Self;
-    /// Whether the matrix is a multiple of the identity: all entries off the diagonal, and all differences on it, are
-    /// at most `epsilon`.
+    /// Whether the matrix is a multiple of the identity: all entries off the diagonal, and all differences on
+    /// it, are at most `epsilon`.
     fn is_isotropic(&self, epsilon: Self::Scalar) -> bool;
 }
 

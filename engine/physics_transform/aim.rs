@@ -30,8 +30,8 @@ pub(crate) struct Places<'w, 's> {
 }
 
 impl Places<'_, '_> {
-    /// The pose that the transform of a body gives. `None` without a transform, and with a warning if it is not finite. A
-    /// transform without a rotation keeps that of the body.
+    /// The pose that the transform of a body gives. `None` without a transform, and with a warning if it is
+    /// not finite. A transform without a rotation keeps that of the body.
     fn of(&mut self, entity: Entity, rotation: &Rotation) -> Option<Place> {
         let transform = self.transforms.get(entity).ok()?;
         let parent = parent_frame(entity, &self.parents, |e| self.transforms.get(e).ok().copied());

@@ -42,7 +42,8 @@ impl Default for Rotation {
 }
 
 impl Rotation {
-    /// Placeholder for the rotation of the `Transform`. It is replaced when the entity gets its body or collider.
+    /// Placeholder for the rotation of the `Transform`. It is replaced when the entity gets its
+    /// body or collider.
     pub const PLACEHOLDER: Self = Self { cos: Scalar::MAX, sin: Scalar::MAX };
     /// No rotation.
     pub const IDENTITY: Self = Self { cos: 1.0, sin: 0.0 };
@@ -201,8 +202,8 @@ impl Rotation {
         Self { cos: self.cos - radians * self.sin, sin: self.sin + radians * self.cos }.normalize()
     }
 
-    /// Interpolates from `self` (`s` = 0) to `end` (`s` = 1) along the chord, and renormalises. For opposite rotations,
-    /// the start.
+    /// Interpolates from `self` (`s` = 0) to `end` (`s` = 1) along the chord, and renormalises. For opposite
+    /// rotations, the start.
     pub fn nlerp(self, end: Self, s: Scalar) -> Self {
         let mix = Self { cos: self.cos + (end.cos - self.cos) * s, sin: self.sin + (end.sin - self.sin) * s };
         mix.try_normalize().unwrap_or(self)
@@ -244,8 +245,8 @@ impl Rotation {
         Self { cos: Scalar::from(rotation.cos), sin: Scalar::from(rotation.sin) }
     }
 
-    /// As a rotation about the z axis, by half angles: `w = √((1 + cos) / 2)`, `z = sin / 2w`. The form without
-    /// cancellation is used.
+    /// As a rotation about the z axis, by half angles: `w = √((1 + cos) / 2)`, `z = sin / 2w`. The form
+    /// without cancellation is used.
     pub(super) fn to_f64(self) -> Rotation64 {
         let (c, s) = (wide(self.cos), wide(self.sin));
         let (z, w) = if c >= 0.0 {
@@ -269,17 +270,17 @@ impl Rotation {
     }
 }
 
-/// The part of a 3D rotation about z, as (z, w), not normalised. A rotation closer to "flipped" than to "upright" (a
-/// sprite rotated half a turn about y or x, showing its back) is measured relative to the half turn about y, so that a
-/// flip alone counts as no rotation: `(w + z k) j = w j − z i`.
+/// The part of a 3D rotation about z, as (z, w), not normalised. A rotation closer to "flipped" than to
+/// "upright" (a sprite rotated half a turn about y or x, showing its back) is measured relative to the half
+/// turn about y, so that a flip alone counts as no rotation: `(w + z k) j = w j − z i`.
 fn twist(turn: Rotation64) -> (f64, f64) {
     let upright = turn.z * turn.z + turn.w * turn.w;
     let flipped = turn.x * turn.x + turn.y * turn.y;
     if upright >= flipped { (turn.z, turn.w) } else { (-turn.x, turn.y) }
 }
 
-/// The world rotation of an entity that should have the rotation `rotation` and now has `current`: only the part about
-/// z is replaced, a tilt is kept.
+/// The world rotation of an entity that should have the rotation `rotation` and now has `current`: only the
+/// part about z is replaced, a tilt is kept.
 #[inline]
 pub(super) fn world_rotation(rotation: Rotation, current: Rotation64) -> Rotation64 {
     let wanted = rotation.to_f64();
@@ -291,8 +292,8 @@ pub(super) fn world_rotation(rotation: Rotation, current: Rotation64) -> Rotatio
     wanted.mul(old.inverse().mul(current)).normalized()
 }
 
-/// Whether `read`, extracted from the tilted rotation `current`, differs from `held` by rounding only. Without a tilt,
-/// bits are compared instead.
+/// Whether `read`, extracted from the tilted rotation `current`, differs from `held` by rounding only.
+/// Without a tilt, bits are compared instead.
 pub(super) fn is_rounding(read: Rotation, held: Rotation, current: Rotation64) -> bool {
     let tilted = current.x != 0.0 || current.y != 0.0;
     tilted && (read.cos - held.cos).abs() < 1e-6 && (read.sin - held.sin).abs() < 1e-6

@@ -16,8 +16,8 @@ use crate::math::{Quaternion, Scalar, Vector};
 
 /// The world rotation of a rigid body or collider, a unit quaternion.
 ///
-/// Multiplication renormalises, so that products of many rotations stay rotations. Products are computed in scalars, so
-/// that their bits do not depend on vector instructions.
+/// Multiplication renormalises, so that products of many rotations stay rotations. Products are computed in
+/// scalars, so that their bits do not depend on vector instructions.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -27,7 +27,8 @@ pub struct Rotation(pub Quaternion);
 crate::type_path::type_path!(Rotation, "physics_transform::transform");
 
 impl Rotation {
-    /// Placeholder for the rotation of the `Transform`. It is replaced when the entity gets its body or collider.
+    /// Placeholder for the rotation of the `Transform`. It is replaced when the entity gets its
+    /// body or collider.
     pub const PLACEHOLDER: Self =
         Self(Quaternion::from_xyzw(Scalar::MAX, Scalar::MAX, Scalar::MAX, Scalar::MAX));
     /// No rotation.
@@ -43,7 +44,8 @@ impl Rotation {
         Self(Quaternion::from_xyzw(-self.0.x, -self.0.y, -self.0.z, self.0.w))
     }
 
-    /// Interpolates from `self` (`t` = 0) to `end` (`t` = 1) along the chord, the shorter way, and renormalises.
+    /// Interpolates from `self` (`t` = 0) to `end` (`t` = 1) along the chord, the shorter way, and
+    /// renormalises.
     pub fn nlerp(self, end: Self, t: Scalar) -> Self {
         let (a, b) = (self.to_f64(), end.to_f64());
         let b = if a.dot(b) < 0.0 { b.negated() } else { b };
@@ -130,8 +132,8 @@ impl Rotation {
         Rotation64 { x: wide(x), y: wide(y), z: wide(z), w: wide(w) }
     }
 
-    /// From an `f64` rotation, renormalised if it deviates from unit length by more than rounding. `None` if it cannot
-    /// be normalised.
+    /// From an `f64` rotation, renormalised if it deviates from unit length by more than rounding. `None` if
+    /// it cannot be normalised.
     pub(super) fn from_f64(turn: Rotation64) -> Option<Self> {
         let square = turn.dot(turn);
         if !(square > 0.0 && square.is_finite()) {

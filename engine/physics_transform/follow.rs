@@ -1,8 +1,8 @@
 //! Kinematic bodies that follow their `Transform`: where they have to be at the end of a step.
 //!
-//! The app writes a `Transform` once a frame, and steps are taken at other times. What a body follows is the line between the
-//! transforms of the last two frames: over the ticks of this frame it moves from one to the other, so that it has the same
-//! velocity at any number of ticks per frame.
+//! The app writes a `Transform` once a frame, and steps are taken at other times. What a body follows is the
+//! line between the transforms of the last two frames: over the ticks of this frame it moves from one to the
+//! other, so that it has the same velocity at any number of ticks per frame.
 //!
 //! ```text
 //! frame        f-2        f-1         f
@@ -20,23 +20,24 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::{Position, Rotation};
 use crate::math::Scalar;
 
-/// Lets a kinematic body go where its `Transform` is by velocity, instead of teleporting it there: what stands on it is
-/// carried, what is in its way is hit with its true velocity.
+/// Lets a kinematic body go where its `Transform` is by velocity, instead of teleporting it there: what
+/// stands on it is carried, what is in its way is hit with its true velocity.
 ///
-/// The app animates the `Transform` of the body or of an entity above it, once a frame or in each tick. The engine sets
-/// [`LinearVelocity`](crate::prelude::LinearVelocity) and [`AngularVelocity`](crate::prelude::AngularVelocity) before each
-/// step, so that the body gets there in the step; they are zero when the `Transform` no longer moves. What the app writes to
-/// them is overwritten.
+/// The app animates the `Transform` of the body or of an entity above it, once a frame or in each tick. The
+/// engine sets [`LinearVelocity`](crate::prelude::LinearVelocity) and
+/// [`AngularVelocity`](crate::prelude::AngularVelocity) before each step, so that the body gets there in the
+/// step; they are zero when the `Transform` no longer moves. What the app writes to them is overwritten.
 ///
-/// - Written in `Update` while physics runs in fixed ticks, the body is one frame behind its `Transform`, and moves evenly: at
-///   64 ticks a second its velocity is right with 30 frames as with 144.
-/// - The engine does not write the `Transform`: it stays as the app animates it, also with `translation += …`.
-/// - A jump of the `Transform` is a motion like any other: 10 m in a tick are 640 m/s. To teleport the body, set its
-///   [`Position`] or [`Rotation`]: it is there at once and at rest, and its `Transform` is written.
+/// - Written in `Update` while physics runs in fixed ticks, the body is one frame behind its `Transform`, and
+///   moves evenly: at 64 ticks a second its velocity is right with 30 frames as with 144.
+/// - The engine does not write the `Transform`: it stays as the app animates it, also with
+///   `translation += …`.
+/// - A jump of the `Transform` is a motion like any other: 10 m in a tick are 640 m/s. To teleport the body,
+///   set its [`Position`] or [`Rotation`]: it is there at once and at rest, and its `Transform` is written.
 /// - A `Transform` that moved while physics was paused is such a teleport.
 ///
-/// Without effect on dynamic and static bodies, and while the body is disabled. Not for bodies with `TransformInterpolation`:
-/// what the app animates needs no easing. Beyond Avian.
+/// Without effect on dynamic and static bodies, and while the body is disabled. Not for bodies with
+/// `TransformInterpolation`: what the app animates needs no easing. Beyond Avian.
 ///
 /// ```
 /// # use avian::prelude::*;

@@ -1,8 +1,9 @@
 //! Coordinate frames of the transform hierarchy, in `f64` scalars, and conversions of poses between them.
 //!
-//! `GlobalTransform` does not serve: it is an `Affine3A`, whose sums run in another order on another instruction set,
-//! and inside a fixed step it is a frame old. The inputs are `f32`, so `f64` leaves one rounding at the end. A pose
-//! that is written to a nested body's `Transform` is read back with the same bits, but for rare ties.
+//! `GlobalTransform` does not serve: it is an `Affine3A`, whose sums run in another order on another
+//! instruction set, and inside a fixed step it is a frame old. The inputs are `f32`, so `f64` leaves one
+//! rounding at the end. A pose that is written to a nested body's `Transform` is read back with the same
+//! bits, but for rare ties.
 
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
@@ -35,8 +36,8 @@ fn inverse(m: &Columns) -> Option<Columns> {
     Some([0, 1, 2].map(|column| [0, 1, 2].map(|row| rows[row][column] / d)))
 }
 
-/// The rotation whose axes are the first and second column, orthonormalised (Gram–Schmidt). `None` if they are parallel
-/// or zero.
+/// The rotation whose axes are the first and second column, orthonormalised (Gram–Schmidt). `None` if they
+/// are parallel or zero.
 fn orthonormal(first: [f64; 3], second: [f64; 3]) -> Option<Rotation64> {
     let unit = |v: [f64; 3]| {
         let length = dot(v, v).sqrt();
@@ -59,10 +60,11 @@ enum Linear {
 
 /// The frame of an entity in the world, or in a body's space.
 ///
-/// Rotation and scale are stored separately if they commute, which is so except for a rotation below an uneven or
-/// mirroring scale. Otherwise the frame is a matrix M, and its rotation is defined by the QR factors of M: its x axis
-/// is the image of the x axis (negated if M mirrors, as in Bevy), and its xy plane the image of the xy plane. This
-/// definition has an exact inverse: a rotation written below a sheared parent is read back unchanged.
+/// Rotation and scale are stored separately if they commute, which is so except for a rotation below an
+/// uneven or mirroring scale. Otherwise the frame is a matrix M, and its rotation is defined by the QR
+/// factors of M: its x axis is the image of the x axis (negated if M mirrors, as in Bevy), and its xy plane
+/// the image of the xy plane. This definition has an exact inverse: a rotation written below a sheared parent
+/// is read back unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Frame {
     translation: [f64; 3],
@@ -152,7 +154,8 @@ impl Frame {
         self.local_vector([0, 1, 2].map(|i| v[i] - self.translation[i]))
     }
 
-    /// Transforms a vector, such as a velocity, from the outer space to this frame; `None` if the frame is singular.
+    /// Transforms a vector, such as a velocity, from the outer space to this frame; `None` if the
+    /// frame is singular.
     pub(crate) fn local_vector(&self, v: [f64; 3]) -> Option<[f64; 3]> {
         match self.linear {
             Linear::Scaled(scale) => {
@@ -164,8 +167,9 @@ impl Frame {
         }
     }
 
-    /// Transforms an angular velocity from the outer space to this frame: the axis as a vector, at the same speed, and in
-    /// the opposite sense if the frame mirrors. `None` if the frame is singular or nothing turns.
+    /// Transforms an angular velocity from the outer space to this frame: the axis as a vector, at the
+    /// same speed, and in the opposite sense if the frame mirrors. `None` if the frame is singular or
+    /// nothing turns.
     pub(crate) fn local_spin(&self, spin: [f64; 3]) -> Option<[f64; 3]> {
         let axis = self.local_vector(spin)?;
         let factor = (dot(spin, spin) / dot(axis, axis)).sqrt() * determinant(&self.matrix()).signum();

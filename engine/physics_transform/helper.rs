@@ -16,8 +16,8 @@ use thiserror::Error;
 
 use super::{Position, Rotation, frame::read_pose, sync::parent_frame, tree::Parents};
 
-/// Computes current global transforms, and writes them to [`Position`] and [`Rotation`] without waiting for the next
-/// step. Useful after teleports, before spatial queries.
+/// Computes current global transforms, and writes them to [`Position`] and [`Rotation`] without waiting for
+/// the next step. Useful after teleports, before spatial queries.
 #[derive(SystemParam)]
 pub struct PhysicsTransformHelper<'w, 's> {
     /// Computes global transforms through the hierarchy.

@@ -2,10 +2,12 @@
 //!
 //! - Before a step, transforms that the app changed are read into [`Position`] and [`Rotation`].
 //! - After it, the poses of bodies that moved are written back, relative to the parent if there is one.
-//! - If both were set since the last step, the pose wins over the transform, separately for position and rotation.
-//! - Bodies move independently of their parents in the simulation. A change to a parent's `Transform` by the app moves
-//!   the bodies below it.
-//! - A kinematic body with [`FollowTransform`] goes where its transform is by velocity, and its transform is not written.
+//! - If both were set since the last step, the pose wins over the transform, separately for position
+//!   and rotation.
+//! - Bodies move independently of their parents in the simulation. A change to a parent's `Transform` by the
+//!   app moves the bodies below it.
+//! - A kinematic body with [`FollowTransform`] goes where its transform is by velocity, and its transform
+//!   is not written.
 
 /// `$left * $right` for every mix of values, references and mutable references.
 macro_rules! by_reference {
@@ -98,7 +100,8 @@ pub enum PhysicsTransformSystems {
     /// Find changes of the hierarchy and its transforms. First in
     /// [`PhysicsSystems::Prepare`](crate::schedule::PhysicsSystems::Prepare).
     Propagate,
-    /// Read changed transforms into poses. In [`PhysicsSystems::Prepare`](crate::schedule::PhysicsSystems::Prepare).
+    /// Read changed transforms into poses. In
+    /// [`PhysicsSystems::Prepare`](crate::schedule::PhysicsSystems::Prepare).
     TransformToPosition,
     /// Write poses that changed to transforms. In
     /// [`PhysicsSystems::Writeback`](crate::schedule::PhysicsSystems::Writeback).

@@ -19,15 +19,16 @@ use crate::math::{Scalar, Vector, vector_from_xyz};
 
 /// The world position of a rigid body or collider, in metres.
 ///
-/// The simulation reads and writes this and [`Rotation`](super::Rotation); `Transform` is synchronised with them. To
-/// place an entity, set either; if both were set since the last step, the position wins. The position of a collider
-/// that is a child of a body follows from the body and the collider's
+/// The simulation reads and writes this and [`Rotation`](super::Rotation); `Transform` is synchronised with
+/// them. To place an entity, set either; if both were set since the last step, the position wins. The
+/// position of a collider that is a child of a body follows from the body and the collider's
 /// [`ColliderTransform`](crate::collision::collider::collider_transform::ColliderTransform).
 ///
-/// A clone of an entity has its pose, unless the app sets another `Transform` or position before the next step.
+/// A clone of an entity has its pose, unless the app sets another `Transform` or position before
+/// the next step.
 ///
-/// A nested body (a body that is a child of another) moves on its own: the simulated motion of its parent does not
-/// change its position.
+/// A nested body (a body that is a child of another) moves on its own: the simulated motion of its parent
+/// does not change its position.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -67,7 +68,8 @@ fn clone_position(source: &SourceComponent, context: &mut ComponentCloneCtx) {
 }
 
 impl Position {
-    /// Placeholder for the position of the `Transform`. It is replaced when the entity gets its body or collider.
+    /// Placeholder for the position of the `Transform`. It is replaced when the entity gets its
+    /// body or collider.
     pub const PLACEHOLDER: Self = Self(Vector::MAX);
 
     /// The position at a point, in metres.

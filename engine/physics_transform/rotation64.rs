@@ -80,8 +80,8 @@ impl Rotation64 {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.rotate(axis))
     }
 
-    /// The rotation with these orthonormal columns (Shepperd, "Quaternion from Rotation Matrix", 1978). The largest of
-    /// the four numbers is computed first, which avoids cancellation.
+    /// The rotation with these orthonormal columns (Shepperd, "Quaternion from Rotation Matrix", 1978). The
+    /// largest of the four numbers is computed first, which avoids cancellation.
     pub(super) fn from_columns([x, y, z]: Columns) -> Self {
         let trace = x[0] + y[1] + z[2];
         let turn = if trace > 0.0 {

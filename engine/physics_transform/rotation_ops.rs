@@ -1,4 +1,5 @@
-//! Operations of rotations that are the same in both dimensions: products, conversions from transforms, easing.
+//! Operations of rotations that are the same in both dimensions: products, conversions from
+//! transforms, easing.
 
 use bevy_math::curve::{FunctionCurve, Interval, easing::Ease};
 use bevy_transform::components::{GlobalTransform, Transform};
@@ -9,8 +10,8 @@ use crate::math::{AdjustPrecision, AsF32, Dir, Scalar, Vector};
 
 by_reference!(Rotation, Vector => Vector, |rotation, v| rotation.rotate_vector(v));
 by_reference!(Rotation, Dir => Dir, |rotation, direction| {
-    // The direction is normalised, since the rotation may deviate from unit length. For a rotation that is zero or NaN
-    // the direction is returned unchanged.
+    // The direction is normalised, since the rotation may deviate from unit length. For a rotation that is
+    // zero or NaN the direction is returned unchanged.
     let v: Vector = direction.adjust_precision();
     Dir::new(rotation.rotate_vector(v).f32()).unwrap_or(direction)
 });

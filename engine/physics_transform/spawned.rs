@@ -106,8 +106,8 @@ impl Initialiser<'_, '_> {
     }
 }
 
-/// Initialises a new [`Position`] at once, so that no system reads a placeholder. Ancestors may still be missing or
-/// change, so [`initialise_poses`] checks again before the step.
+/// Initialises a new [`Position`] at once, so that no system reads a placeholder. Ancestors may still be
+/// missing or change, so [`initialise_poses`] checks again before the step.
 pub(crate) fn initialise_added(
     added: On<Add, Position>,
     mut initialiser: Initialiser,
@@ -149,7 +149,8 @@ pub(crate) fn initialise_poses(
     spawned.sort_by_key(|&(depth, ..)| depth);
     for (_, entity, Spawned { given, first, cloned }) in spawned {
         let Ok((position, rotation, _, false)) = initialiser.poses.get(entity) else { continue };
-        // A pose set after spawning counts as given, and so does that of a clone whose transform is that of the original.
+        // A pose set after spawning counts as given, and so does that of a clone whose transform is that of
+        // the original.
         let like = cloned.zip(initialiser.read(entity)).map(|(a, b)| [a.0 == b.0, a.1 == b.1]);
         let like = like.unwrap_or_default();
         let given = [

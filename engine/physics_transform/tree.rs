@@ -1,13 +1,14 @@
-//! The part of Bevy's hierarchy with physics in it: entities with a [`Position`] and their ancestors, with links down
-//! to those only.
+//! The part of Bevy's hierarchy with physics in it: entities with a [`Position`] and their ancestors, with
+//! links down to those only.
 //!
-//! A level may have a hundred thousand pictures and one body under one root. Walking `Children` from the root would
-//! visit all of them; this copy of the hierarchy visits the body only. Roots without physics below need no node.
-//! Observers append to one queue. [`TransformTree::follow`] alone changes links, before a step and again before
-//! transforms are written, by the hierarchy as it is then, so that the order of changes does not matter.
+//! A level may have a hundred thousand pictures and one body under one root. Walking `Children` from the
+//! root would visit all of them; this copy of the hierarchy visits the body only. Roots without physics
+//! below need no node. Observers append to one queue. [`TransformTree::follow`] alone changes links, before
+//! a step and again before transforms are written, by the hierarchy as it is then, so that the order of
+//! changes does not matter.
 //!
-//! Each node counts the poses below it that are written to transforms: a body with only its colliders below is written
-//! like one without children.
+//! Each node counts the poses below it that are written to transforms: a body with only its colliders below
+//! is written like one without children.
 
 use bevy_ecs::{
     change_detection::Tick, entity::EntityHashMap, entity_disabling::Disabled, prelude::*, query::Allow,
@@ -68,10 +69,11 @@ pub(crate) struct TreeChanges {
     pub(crate) reparented: Vec<Entity>,
     /// Entities that the last step's write-back has handled. They are still in the queue.
     pub(crate) early: Vec<Entity>,
-    /// Entities whose `Transform` may differ from the pose, because it changed, or the entity was reparented or
-    /// enabled. Descendants may be missing.
+    /// Entities whose `Transform` may differ from the pose, because it changed, or the entity was reparented
+    /// or enabled. Descendants may be missing.
     pub(crate) transforms: Vec<Entity>,
-    /// Entities whose `Transform` was written after a step, and whose `GlobalTransform` was not updated since.
+    /// Entities whose `Transform` was written after a step, and whose `GlobalTransform` was not
+    /// updated since.
     pub(crate) written: Vec<Entity>,
 }
 
@@ -140,9 +142,9 @@ impl TransformTree {
         self.walk += 1;
     }
 
-    /// Visits `root` and the tracked entities below it, parents first. `visit` gets its own result for the parent, and
-    /// returns `None` to skip descendants. Entities that were visited since [`begin_walk`](Self::begin_walk) are
-    /// skipped with all descendants.
+    /// Visits `root` and the tracked entities below it, parents first. `visit` gets its own result for the
+    /// parent, and returns `None` to skip descendants. Entities that were visited since
+    /// [`begin_walk`](Self::begin_walk) are skipped with all descendants.
     pub(crate) fn descend<C: Clone>(
         &mut self,
         root: Entity,
@@ -328,8 +330,8 @@ pub(crate) fn enqueue<E: EntityEvent, B: Bundle>(
     queue.note(event.event_target(), &tree);
 }
 
-/// Appends an entity that loses Bevy's `Disabled`, if there is physics in it or below. If the app set the pose after the
-/// transform, the pose counts as changed instead, so that the next write-back finds it.
+/// Appends an entity that loses Bevy's `Disabled`, if there is physics in it or below. If the app set the
+/// pose after the transform, the pose counts as changed instead, so that the next write-back finds it.
 pub(super) fn enqueue_enabled(
     event: On<Remove, Disabled>,
     mut queue: ResMut<HierarchyQueue>,

@@ -15,10 +15,11 @@ use crate::{
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(type_path = false, Resource, Debug, Default, PartialEq)]
 pub struct PhysicsPickingSettings {
-    /// Whether only cameras and entities with [`PhysicsPickable`](super::PhysicsPickable) take part. `false` by default.
+    /// Whether only cameras and entities with [`PhysicsPickable`](super::PhysicsPickable) take part.
+    /// `false` by default.
     pub require_markers: bool,
-    /// The z of the plane in which pointers meet colliders, in units of the world. 0 by default. It matters where the
-    /// camera is in perspective or turned.
+    /// The z of the plane in which pointers meet colliders, in units of the world. 0 by default. It matters
+    /// where the camera is in perspective or turned.
     pub z_plane: f32,
 }
 

@@ -15,7 +15,8 @@ use crate::{
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(type_path = false, Resource, Debug, Default, PartialEq)]
 pub struct PhysicsPickingSettings {
-    /// Whether only cameras and entities with [`PhysicsPickable`](super::PhysicsPickable) take part. `false` by default.
+    /// Whether only cameras and entities with [`PhysicsPickable`](super::PhysicsPickable) take part.
+    /// `false` by default.
     pub require_markers: bool,
 }
 

@@ -52,7 +52,8 @@ pub struct PickingTargets<'w, 's> {
 }
 
 impl PickingTargets<'_, '_> {
-    /// Whether a pointer can meet an entity: it is hoverable or hides what is below, and it has a marker if needed.
+    /// Whether a pointer can meet an entity: it is hoverable or hides what is below, and it has a
+    /// marker if needed.
     pub(super) fn is_met(&self, entity: Entity, require_markers: bool) -> bool {
         self.states.get(entity).is_ok_and(|(pickable, marked, _)| {
             pickable.is_none_or(|p| p.is_hoverable || p.should_block_lower) && (marked || !require_markers)

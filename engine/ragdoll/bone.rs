@@ -4,7 +4,8 @@ use bevy_ecs::prelude::*;
 
 use crate::math::Scalar;
 
-/// A bone of a ragdoll. It faces away from the viewer: in 3D along the negative z axis, with its right arm at positive x.
+/// A bone of a ragdoll. It faces away from the viewer: in 3D along the negative z axis, with its right arm
+/// at positive x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Bone {
     /// The hips.

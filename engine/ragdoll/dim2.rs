@@ -85,7 +85,8 @@ pub struct RagdollJoints<'w, 's> {
 }
 
 impl RagdollJoints<'_, '_> {
-    /// Sets the wanted rotation of a bone relative to its parent; the identity is that in which it was spawned.
+    /// Sets the wanted rotation of a bone relative to its parent; the identity is that in which
+    /// it was spawned.
     pub fn set_target(&mut self, ragdoll: &Ragdoll, bone: Bone, rotation: impl Into<Rotation>) {
         let target = rotation.into().as_radians();
         if let Some(joint) = ragdoll.joint(bone)

@@ -38,7 +38,8 @@ pub(super) fn volume(collider: &Collider) -> f32 {
 
 /// How the joint of a bone turns.
 enum Freedom {
-    /// A ball: the direction in which the parent sees the middle of all swings, the greatest swing and the greatest twist.
+    /// A ball: the direction in which the parent sees the middle of all swings, the greatest swing and the
+    /// greatest twist.
     Ball { toward: Vector, swing: Scalar, twist: Scalar },
     /// A hinge about the x axis: the least and the greatest angle.
     Hinge([Scalar; 2]),
@@ -118,8 +119,8 @@ pub struct RagdollJoints<'w, 's> {
 }
 
 impl RagdollJoints<'_, '_> {
-    /// Sets the wanted rotation of a bone relative to its parent; the identity is that in which it was spawned. Elbows and knees
-    /// take its turn about the x axis only.
+    /// Sets the wanted rotation of a bone relative to its parent; the identity is that in which it was
+    /// spawned. Elbows and knees take its turn about the x axis only.
     pub fn set_target(&mut self, ragdoll: &Ragdoll, bone: Bone, rotation: impl Into<Rotation>) {
         let (Some(joint), Rotation(rotation)) = (ragdoll.joint(bone), rotation.into()) else { return };
         if let Ok(mut ball) = self.balls.get_mut(joint)

@@ -1,7 +1,8 @@
 //! [`HumanRagdoll`]: a human of capsules that hang together by joints. Beyond Avian.
 //!
-//! Eleven bones: pelvis, chest, head, and two for each arm and leg. Their joints have the limits of a human's, and neighbours pass
-//! through each other. With a drive, motors hold the bones in a pose, up to a torque: [`RagdollJoints`] sets it in any frame.
+//! Eleven bones: pelvis, chest, head, and two for each arm and leg. Their joints have the limits of a
+//! human's, and neighbours pass through each other. With a drive, motors hold the bones in a pose, up to a
+//! torque: [`RagdollJoints`] sets it in any frame.
 //!
 //! ```
 //! # use avian::prelude::*;
@@ -44,10 +45,11 @@ pub struct HumanRagdoll {
     pub height: Scalar,
     /// Of all bones, in kg. 75 by default.
     pub mass: Scalar,
-    /// The rate at which joints lose velocity, in 1/s. 10 by default; less lets limbs swing on for long, and heaps sleep late or never.
+    /// The rate at which joints lose velocity, in 1/s. 10 by default; less lets limbs swing on for long, and
+    /// heaps sleep late or never.
     pub damping: Scalar,
-    /// The motor of each joint, if there is one. Its targets do not count: all joints are driven to the pose in which it is
-    /// spawned until [`RagdollJoints`] says otherwise. None by default.
+    /// The motor of each joint, if there is one. Its targets do not count: all joints are driven to the pose
+    /// in which it is spawned until [`RagdollJoints`] says otherwise. None by default.
     pub drive: Option<AngularMotor>,
 }
 
@@ -76,8 +78,8 @@ impl HumanRagdoll {
         self
     }
 
-    /// Spawns the bones, each a dynamic body with a capsule, and their joints. The pose is that of the hips; its scale does not
-    /// count. The pelvis gets the [`Ragdoll`].
+    /// Spawns the bones, each a dynamic body with a capsule, and their joints. The pose is that of the hips;
+    /// its scale does not count. The pelvis gets the [`Ragdoll`].
     ///
     /// A height or a mass that is not positive and finite becomes the default, with a warning.
     pub fn spawn(&self, commands: &mut Commands, pose: Transform) -> Ragdoll {

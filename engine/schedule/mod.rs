@@ -1,5 +1,5 @@
-//! Schedules of physics: [`PhysicsSchedule`] is one step, [`PhysicsSystems`] are its sets in the hosting schedule,
-//! [`PhysicsStepSystems`] are the sets of a step, and the [clocks](Physics) define its length.
+//! Schedules of physics: [`PhysicsSchedule`] is one step, [`PhysicsSystems`] are its sets in the hosting
+//! schedule, [`PhysicsStepSystems`] are the sets of a step, and the [clocks](Physics) define its length.
 
 mod step_times;
 mod time;
@@ -22,15 +22,15 @@ use core::time::Duration;
 
 use crate::threads::Threads;
 
-/// Adds [`PhysicsSchedule`], the clocks, the system sets, and the system that takes a step in each run of the hosting
-/// schedule.
+/// Adds [`PhysicsSchedule`], the clocks, the system sets, and the system that takes a step in each run of the
+/// hosting schedule.
 ///
 /// Without it there are no clocks and no step is taken.
 ///
-/// [`FixedPostUpdate`], the default, gets Bevy's single-threaded executor: a step is parallel inside of its systems, and
-/// to hand its systems from thread to thread takes longer than a step of some hundred bodies. Systems of the app in
-/// [`FixedPostUpdate`] then run one after the other, too. If that is too slow, set another executor after the plugin is
-/// added; other hosting schedules keep theirs.
+/// [`FixedPostUpdate`], the default, gets Bevy's single-threaded executor: a step is parallel inside of its
+/// systems, and to hand its systems from thread to thread takes longer than a step of some hundred bodies.
+/// Systems of the app in [`FixedPostUpdate`] then run one after the other, too. If that is too slow, set
+/// another executor after the plugin is added; other hosting schedules keep theirs.
 pub struct PhysicsSchedulePlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
@@ -112,8 +112,9 @@ fn end_writeback(mut times: ResMut<StepTimes>, threads: Res<Threads>, _: OnThisT
     threads.pool.rest();
 }
 
-/// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule, if that is a schedule with
-/// many threads. Most of these systems do so little that handing them to another thread would take a hundred times as long.
+/// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule, if that is a
+/// schedule with many threads. Most of these systems do so little that handing them to another thread would
+/// take a hundred times as long.
 pub(crate) use bevy_ecs::system::NonSendMarker as OnThisThread;
 
 /// Lets a schedule run its systems one after the other, and makes an ambiguous order an error.
@@ -128,15 +129,15 @@ pub(crate) fn make_deterministic(schedule: &mut Schedule) {
 
 /// One step of the simulation. Its sets are [`PhysicsStepSystems`].
 ///
-/// Systems run one after the other, and an ambiguous order is an error: use `.before` or `.after` where two of your
-/// systems share data. The order relative to the engine's own systems in the same set may be left open: shared data is
-/// then read either before or after them. [Run by hand](Physics#stepping-by-hand), a step is as long as the delta of
-/// [`Time<Physics>`](Physics), independent of the generic [`Time`].
+/// Systems run one after the other, and an ambiguous order is an error: use `.before` or `.after` where two
+/// of your systems share data. The order relative to the engine's own systems in the same set may be left
+/// open: shared data is then read either before or after them. [Run by hand](Physics#stepping-by-hand), a
+/// step is as long as the delta of [`Time<Physics>`](Physics), independent of the generic [`Time`].
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct PhysicsSchedule;
 
-/// Runs instead of [`PhysicsSchedule`] where the hosting schedule runs and takes no step: while physics is paused, or at
-/// a relative speed of 0.
+/// Runs instead of [`PhysicsSchedule`] where the hosting schedule runs and takes no step: while physics is
+/// paused, or at a relative speed of 0.
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub(crate) struct SkippedStep;
 
@@ -199,8 +200,9 @@ pub type PhysicsStepSet = PhysicsStepSystems;
 
 /// The change tick at the end of the last step.
 ///
-/// Newer changes were made by the app, or by the write-back of that step, not by the step itself. A run of the hosting
-/// schedule without a step does not change it: what the app changes while physics is paused is new for the next step.
+/// Newer changes were made by the app, or by the write-back of that step, not by the step itself. A run of
+/// the hosting schedule without a step does not change it: what the app changes while physics is paused is
+/// new for the next step.
 #[derive(Resource, Reflect, Default)]
 #[reflect(Resource, Default)]
 pub struct LastPhysicsTick(pub Tick);

@@ -9,15 +9,15 @@ use std::sync::OnceLock;
 
 use crate::asked::Asked;
 
-/// Time of each part of the last step, in the order they ran: from `Prepare`, where transforms are read, through the
-/// stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
+/// Time of each part of the last step, in the order they ran: from `Prepare`, where transforms are read,
+/// through the stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
 ///
-/// Empty until [`parts`](Self::parts) or [`total`](Self::total) is first called, of the resource or a clone, and filled by every
-/// step from then on: the clocks take a tenth of a small world's step.
+/// Empty until [`parts`](Self::parts) or [`total`](Self::total) is first called, of the resource or a clone,
+/// and filled by every step from then on: the clocks take a tenth of a small world's step.
 ///
-/// The time of the app's systems between two parts is included in the later one. `DrainLifecycle`, `ReadAwake`,
-/// `Gather`, `Scatter`, `WriteTransforms` and `MirrorSleep`, besides `Prepare` and `Writeback`, only copy between
-/// components and the engine's tables. The names are for display, and may change.
+/// The time of the app's systems between two parts is included in the later one. `DrainLifecycle`,
+/// `ReadAwake`, `Gather`, `Scatter`, `WriteTransforms` and `MirrorSleep`, besides `Prepare` and `Writeback`,
+/// only copy between components and the engine's tables. The names are for display, and may change.
 ///
 /// ```
 /// # use avian::schedule::StepTimes;
@@ -61,8 +61,8 @@ impl StepTimes {
         self.counts_shared = true;
     }
 
-    /// Time of the last step in which several threads worked. The rest is the work of one thread, and takes as long on
-    /// any number of cores. Zero unless [measured](Self::count_shared), which costs a little.
+    /// Time of the last step in which several threads worked. The rest is the work of one thread, and takes
+    /// as long on any number of cores. Zero unless [measured](Self::count_shared), which costs a little.
     pub fn shared(&self) -> Duration {
         self.shared[0]
     }

@@ -1,5 +1,5 @@
-//! Clocks of a step: [`Time<Physics>`](Physics), advanced once per step, and [`Time<Substeps>`](Substeps), advanced
-//! once per substep. The generic [`Time`] is set to one of them while a schedule runs.
+//! Clocks of a step: [`Time<Physics>`](Physics), advanced once per step, and [`Time<Substeps>`](Substeps),
+//! advanced once per substep. The generic [`Time`] is set to one of them while a schedule runs.
 
 use bevy_ecs::world::World;
 use bevy_log::warn_once;
@@ -13,8 +13,8 @@ use crate::math::Scalar;
 
 /// The clock of the simulation, a context of [`Time`].
 ///
-/// `Time<Physics>` advances once per step by the delta of the schedule that physics runs in, times the [relative
-/// speed](PhysicsTime::relative_speed), or not at all while [paused](PhysicsTime::pause). Within
+/// `Time<Physics>` advances once per step by the delta of the schedule that physics runs in, times the
+/// [relative speed](PhysicsTime::relative_speed), or not at all while [paused](PhysicsTime::pause). Within
 /// [`PhysicsSchedule`](super::PhysicsSchedule) the generic `Time` has the same values.
 ///
 /// ```
@@ -32,7 +32,8 @@ use crate::math::Scalar;
 ///
 /// # Stepping by hand
 ///
-/// While the clock is paused, every `advance_by` counts as a request for one step. Either run the step at once,
+/// While the clock is paused, every `advance_by` counts as a request for one step. Either run the
+/// step at once,
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -48,8 +49,8 @@ use crate::math::Scalar;
 /// }
 /// ```
 ///
-/// or only advance the clock: the next run of the schedule that hosts physics then takes that step, including reading
-/// and writing transforms.
+/// or only advance the clock: the next run of the schedule that hosts physics then takes that step, including
+/// reading and writing transforms.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -93,9 +94,9 @@ pub trait PhysicsTime {
     /// The clock with this [relative speed](Self::set_relative_speed), in double precision.
     fn with_relative_speed_f64(self, ratio: f64) -> Self;
 
-    /// Sets the number of simulated seconds per second of the hosting schedule: 0.5 is slow motion, 0 stops. It scales
-    /// the *length* of each step, not their number, so large values cost accuracy. Negative, infinite and NaN ratios
-    /// are ignored with a warning.
+    /// Sets the number of simulated seconds per second of the hosting schedule: 0.5 is slow motion, 0 stops.
+    /// It scales the *length* of each step, not their number, so large values cost accuracy. Negative,
+    /// infinite and NaN ratios are ignored with a warning.
     fn set_relative_speed(&mut self, ratio: f32);
 
     /// [`set_relative_speed`](Self::set_relative_speed) in double precision.
@@ -157,14 +158,14 @@ impl PhysicsTime for Time<Physics> {
     }
 }
 
-/// The clock of the substeps, a context of [`Time`]: its delta is that of [`Time<Physics>`](Physics) divided by the
-/// [`SubstepCount`](crate::dynamics::solver::schedule::SubstepCount).
+/// The clock of the substeps, a context of [`Time`]: its delta is that of [`Time<Physics>`](Physics) divided
+/// by the [`SubstepCount`](crate::dynamics::solver::schedule::SubstepCount).
 ///
-/// It advances once per substep. From the start of a step it shows the end of the first substep, after the step the end
-/// of the last.
+/// It advances once per substep. From the start of a step it shows the end of the first substep, after the
+/// step the end of the last.
 ///
-/// Within [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule) the generic `Time` has the same
-/// values.
+/// Within [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule) the generic `Time` has
+/// the same values.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -15,11 +15,11 @@ use crate::{
 /// Number of queries that a thread takes at once. Fewer balance better, more cost less to hand out.
 const CHUNK: usize = 256;
 
-/// Many queries at once. Results are those of the single queries, for any number of threads, and in the order of the
-/// questions.
+/// Many queries at once. Results are those of the single queries, for any number of threads, and in the order
+/// of the questions.
 ///
-/// Answers are written to a slice, so that its memory can be used again. If it is longer than that of the questions, the
-/// rest becomes `None`; if it is shorter, the last questions are not asked.
+/// Answers are written to a slice, so that its memory can be used again. If it is longer than that of the
+/// questions, the rest becomes `None`; if it is shorter, the last questions are not asked.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};

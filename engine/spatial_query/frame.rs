@@ -32,8 +32,8 @@ impl CasterFrame {
     }
 }
 
-/// Poses of casters: `Position` and `Rotation` where an entity has them, else its `Transform` applied to the pose of its
-/// parent.
+/// Poses of casters: `Position` and `Rotation` where an entity has them, else its `Transform` applied to the
+/// pose of its parent.
 #[derive(SystemParam)]
 pub(super) struct Frames<'w, 's> {
     poses: Query<'w, 's, (&'static Position, &'static Rotation)>,

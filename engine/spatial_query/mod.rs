@@ -9,9 +9,10 @@
 //!
 //! [`SpatialQueryFilter`] chooses layers and excludes entities.
 //!
-//! Queries see the world as its components are: colliders that were spawned, moved, scaled, disabled or removed since
-//! the last step, also while physics is paused. A [`Position`](crate::physics_transform::Position) is current; a
-//! `Transform` that was set by hand is read before the next step, or by
+//! Queries see the world as its components are: colliders that were spawned, moved, scaled, disabled or
+//! removed since the last step, also while physics is paused. A
+//! [`Position`](crate::physics_transform::Position) is current; a `Transform` that was set by hand is read
+//! before the next step, or by
 //! [`PhysicsTransformHelper`](crate::physics_transform::PhysicsTransformHelper) at once.
 
 #[cfg(feature = "default-collider")]
@@ -27,13 +28,13 @@ mod ray_caster;
 #[cfg(feature = "default-collider")]
 mod recent;
 #[cfg(feature = "default-collider")]
-mod search;
-#[cfg(feature = "default-collider")]
 mod searches;
 #[cfg(feature = "default-collider")]
 mod shape_caster;
 #[cfg(feature = "default-collider")]
 mod system_param;
+#[cfg(feature = "default-collider")]
+mod traversal;
 #[cfg(feature = "default-collider")]
 mod update;
 #[cfg(feature = "default-collider")]
@@ -52,7 +53,7 @@ pub use system_param::{PointProjection, SpatialQuery};
 
 use bevy_ecs::prelude::*;
 
-/// The systems that update casters, once per run of the schedule of [`SpatialQueryPlugin`], after transforms were
-/// propagated.
+/// The systems that update casters, once per run of the schedule of [`SpatialQueryPlugin`], after transforms
+/// were propagated.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpatialQuerySystems;

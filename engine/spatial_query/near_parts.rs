@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use kernel::query::visit_closest;
 
 use super::{
-    SpatialQuery, SpatialQueryFilter, search::Candidate, searches::is_foreign, system_param::pose_of,
+    SpatialQuery, SpatialQueryFilter, searches::is_foreign, system_param::pose_of, traversal::Candidate,
 };
 use crate::{
     collision::collider::{Collider, contact_query},
@@ -26,8 +26,8 @@ pub(crate) struct NearPart {
 }
 
 impl SpatialQuery<'_, '_> {
-    /// All convex parts within `reach` metres of a shape, of the colliders that the predicate is true for: in the order
-    /// in which colliders entered the simulation. There are none at a pose that is not finite.
+    /// All convex parts within `reach` metres of a shape, of the colliders that the predicate is true for: in
+    /// the order in which colliders entered the simulation. There are none at a pose that is not finite.
     pub(crate) fn near_parts(
         &self,
         shape: &Collider,

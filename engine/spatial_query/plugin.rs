@@ -11,8 +11,8 @@ use crate::{
     step,
 };
 
-/// Updates [`RayCaster`](super::RayCaster)s and `ShapeCaster`s once per run of a schedule, also while physics is
-/// paused. The parameter `SpatialQuery` works without it.
+/// Updates [`RayCaster`](super::RayCaster)s and `ShapeCaster`s once per run of a schedule, also while physics
+/// is paused. The parameter `SpatialQuery` works without it.
 pub struct SpatialQueryPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }

@@ -49,11 +49,11 @@ pub struct RayCaster {
     pub max_hits: u32,
     /// The length of the ray in metres. No limit by default.
     pub max_distance: Scalar,
-    /// Whether a ray that begins inside of a collider hits it at distance 0. If not it hits the boundary from within.
-    /// True by default.
+    /// Whether a ray that begins inside of a collider hits it at distance 0. If not it hits the boundary from
+    /// within. True by default.
     pub solid: bool,
-    /// Whether the ray passes through the colliders of its entity, and of the body that this belongs to. True by
-    /// default.
+    /// Whether the ray passes through the colliders of its entity, and of the body that this belongs to.
+    /// True by default.
     pub ignore_self: bool,
     /// Which colliders are hit. All by default.
     pub query_filter: SpatialQueryFilter,
@@ -175,8 +175,8 @@ impl RayCaster {
     }
 }
 
-/// The hits of a [`RayCaster`], nearest first; at the same distance in the order in which colliders entered the
-/// simulation.
+/// The hits of a [`RayCaster`], nearest first; at the same distance in the order in which colliders entered
+/// the simulation.
 #[derive(Component, Clone, Debug, Default, Deref, DerefMut, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -236,12 +236,14 @@ pub struct RayHitData {
     pub entity: Entity,
     /// The distance along the ray, in metres.
     pub distance: Scalar,
-    /// The outward unit normal of the collider, in the world. Zero if the ray begins inside of a solid collider.
+    /// The outward unit normal of the collider, in the world. Zero if the ray begins inside of a
+    /// solid collider.
     pub normal: Vector,
 }
 
 impl RayHitData {
-    /// The point where the ray hits, in the world, in metres. Takes the origin and direction that the ray was cast with.
+    /// The point where the ray hits, in the world, in metres. Takes the origin and direction that the ray
+    /// was cast with.
     ///
     /// [`RayCaster::get_global_point`] does the same for the hits of a caster.
     ///

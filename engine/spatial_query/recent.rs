@@ -1,8 +1,9 @@
-//! Colliders that differ from the tables: those that the app spawned, changed, moved or removed since the last step.
+//! Colliders that differ from the tables: those that the app spawned, changed, moved or removed since
+//! the last step.
 //!
-//! The tables and trees follow components once per step. Until then a query leaves out the colliders that changed, and
-//! looks at their components instead, through a tree of their own. All systems and observers share what is known of them:
-//! each run adds what changed since the last one (`world.rs`).
+//! The tables and trees follow components once per step. Until then a query leaves out the colliders that
+//! changed, and looks at their components instead, through a tree of their own. All systems and observers
+//! share what is known of them: each run adds what changed since the last one (`world.rs`).
 
 use bevy_ecs::{
     entity::{EntityHashMap, EntityIndexSet},

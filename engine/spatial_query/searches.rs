@@ -3,7 +3,7 @@
 use super::{
     RayHitData, ShapeCastConfig, ShapeHitData, SpatialQueryFilter,
     recent::Recent,
-    search::{Candidate, Found, Scene, Walk},
+    traversal::{Candidate, Found, Scene, Walk},
     world::World,
 };
 use crate::{

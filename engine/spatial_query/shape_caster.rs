@@ -16,8 +16,8 @@ use crate::{
     physics_transform::Rotation,
 };
 
-/// Casts a shape from its entity once per run of the schedule: it moves along a line, without turning. The hits are in
-/// [`ShapeHits`].
+/// Casts a shape from its entity once per run of the schedule: it moves along a line, without turning. The
+/// hits are in [`ShapeHits`].
 ///
 /// Origin, rotation and direction are in the frame of the entity, so that the cast moves and turns with it.
 ///
@@ -65,8 +65,8 @@ pub struct ShapeCaster {
     pub compute_contact_on_penetration: bool,
     /// See [`ShapeCastConfig::ignore_origin_penetration`]. False by default.
     pub ignore_origin_penetration: bool,
-    /// Whether the shape passes through the colliders of its entity, and of the body that this belongs to. True by
-    /// default.
+    /// Whether the shape passes through the colliders of its entity, and of the body that this belongs to.
+    /// True by default.
     pub ignore_self: bool,
     /// Which colliders are hit. All by default.
     pub query_filter: SpatialQueryFilter,
@@ -82,8 +82,8 @@ impl Default for ShapeCaster {
 }
 
 impl ShapeCaster {
-    /// A shape with an origin in metres, a rotation (radians in 2D, a quaternion in 3D) and a direction, all in the
-    /// entity's frame.
+    /// A shape with an origin in metres, a rotation (radians in 2D, a quaternion in 3D) and a direction, all
+    /// in the entity's frame.
     pub fn new(
         shape: impl Into<Collider>,
         origin: Vector,
@@ -127,7 +127,8 @@ impl ShapeCaster {
         self
     }
 
-    /// The same with another value of [`compute_contact_on_penetration`](Self::compute_contact_on_penetration).
+    /// The same with another value of
+    /// [`compute_contact_on_penetration`](Self::compute_contact_on_penetration).
     pub fn with_compute_contact_on_penetration(mut self, compute_contact: bool) -> Self {
         self.compute_contact_on_penetration = compute_contact;
         self
@@ -217,11 +218,11 @@ pub struct ShapeCastConfig {
     pub max_distance: Scalar,
     /// The distance at which the shape meets a collider, in metres. 0 by default.
     pub target_distance: Scalar,
-    /// Whether points and normals are computed where the shape overlaps a collider from the start: those of the least
-    /// depth. True by default. If not they are unspecified, which is faster.
+    /// Whether points and normals are computed where the shape overlaps a collider from the start: those of
+    /// the least depth. True by default. If not they are unspecified, which is faster.
     pub compute_contact_on_penetration: bool,
-    /// Whether colliders that the shape overlaps from the start are passed by, unless it moves deeper into them. False
-    /// by default: they are hit at distance 0.
+    /// Whether colliders that the shape overlaps from the start are passed by, unless it moves deeper into
+    /// them. False by default: they are hit at distance 0.
     pub ignore_origin_penetration: bool,
 }
 
@@ -263,8 +264,8 @@ impl ShapeCastConfig {
     }
 }
 
-/// The hits of a [`ShapeCaster`], nearest first; at the same distance in the order in which colliders entered the
-/// simulation.
+/// The hits of a [`ShapeCaster`], nearest first; at the same distance in the order in which colliders entered
+/// the simulation.
 #[derive(Component, Clone, Debug, Default, Deref, DerefMut, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -335,8 +336,8 @@ pub struct ShapeHitData {
 }
 
 impl ShapeHitData {
-    /// The point where the shape stops: its origin when they meet, in the world, in metres. Takes the origin and direction
-    /// that the shape was cast with.
+    /// The point where the shape stops: its origin when they meet, in the world, in metres. Takes the origin
+    /// and direction that the shape was cast with.
     ///
     /// [`point1`](Self::point1) and [`point2`](Self::point2) are where the surfaces meet.
     pub fn point(&self, origin: Vector, direction: Dir) -> Vector {

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use super::{
     RayHitData, ShapeCastConfig, ShapeHitData, SpatialQueryFilter,
     recent::Recent,
-    search::{all, nearest, some},
     searches::{Search, is_foreign},
+    traversal::{all, nearest, some},
     world::World,
 };
 use crate::{
@@ -25,12 +25,13 @@ use crate::{
 
 /// Rays, shape casts, nearest points and overlaps of all colliders, as a system parameter.
 ///
-/// Colliders are seen as their components are now; see [`spatial_query`](crate::spatial_query). Results are the same on
-/// every machine and for any number of threads: hits are nearest first, at the same distance in the order in which
-/// colliders entered the simulation. Sensors are found, disabled colliders are not.
+/// Colliders are seen as their components are now; see [`spatial_query`](crate::spatial_query). Results are
+/// the same on every machine and for any number of threads: hits are nearest first, at the same distance in
+/// the order in which colliders entered the simulation. Sensors are found, disabled colliders are not.
 ///
-/// A query reads only, so that many threads can share the parameter. A ray or cast whose origin is not finite, whose
-/// direction has no length, or whose distance is negative or NaN hits nothing. Lengths are in metres.
+/// A query reads only, so that many threads can share the parameter. A ray or cast whose origin is not
+/// finite, whose direction has no length, or whose distance is negative or NaN hits nothing. Lengths
+/// are in metres.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -121,8 +122,8 @@ static EVERYTHING: &SpatialQueryFilter = &SpatialQueryFilter::DEFAULT;
 impl SpatialQuery<'_, '_> {
     /// The first collider that a ray hits.
     ///
-    /// A ray that begins inside of a collider hits it at distance 0 with a zero normal if `solid`, else its boundary
-    /// from within.
+    /// A ray that begins inside of a collider hits it at distance 0 with a zero normal if `solid`, else its
+    /// boundary from within.
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -226,7 +227,8 @@ impl SpatialQuery<'_, '_> {
         self.shape_hits_predicate(start, direction, max_hits, config, filter, EVERY)
     }
 
-    /// Calls `callback` with all colliders that a shape meets on its way, nearest first, until it returns `false`.
+    /// Calls `callback` with all colliders that a shape meets on its way, nearest first, until it
+    /// returns `false`.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     pub fn shape_hits_callback(
         &self,

@@ -1,8 +1,9 @@
-//! The tables and the components that they follow, as a system parameter, and what changed since the last step.
+//! The tables and the components that they follow, as a system parameter, and what changed since
+//! the last step.
 //!
-//! What changed is known from the life-cycle queue and its log, and by a scan of change ticks. All systems and
-//! observers share the result. The first query of a run reads only colliders that changed since the last run that queried.
-//! Without queries nothing is read.
+//! What changed is known from the life-cycle queue and its log, and by a scan of change ticks. All systems
+//! and observers share the result. The first query of a run reads only colliders that changed since the last
+//! run that queried. Without queries nothing is read.
 
 use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemChangeTick, system::SystemParam};
 use kernel::{math::Pose, table::NONE};
@@ -61,7 +62,8 @@ struct Base {
 }
 
 impl Known {
-    /// Whether a run of this tick has nothing to add: it holds what it reads, so nothing is written while it goes on.
+    /// Whether a run of this tick has nothing to add: it holds what it reads, so nothing is written
+    /// while it goes on.
     fn is_of(&self, now: Tick) -> bool {
         self.progress.is_some_and(|last| now.get().wrapping_sub(last.tick.get()) as i32 <= 0)
     }
@@ -215,8 +217,8 @@ impl World<'_, '_> {
         })
     }
 
-    /// Entities of colliders that may differ from what was known after a moment; from the tables if there is none. Some may
-    /// be named twice.
+    /// Entities of colliders that may differ from what was known after a moment; from the tables if there is
+    /// none. Some may be named twice.
     fn changed(&self, after: Option<&Progress>, recent: &Recent) -> Vec<Entity> {
         let LifecycleQueue { bodies, colliders, lost_bodies, log, leaving, refused, detached, .. } =
             &*self.queue;

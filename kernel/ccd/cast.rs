@@ -6,7 +6,7 @@
 use super::path::Path;
 use crate::contact::ManifoldSource;
 use crate::distance::{Approach, advance};
-use crate::manifold::{self, CompositeBuffers, FeatureCache, LocalManifold, Look};
+use crate::manifold::{self, CompositeBuffers, FeatureCache, LocalManifold, ManifoldQuery};
 use crate::math::{Pose, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
 use crate::tuning::sweeps::{MET, ROUNDS, VIEW};
@@ -106,7 +106,7 @@ impl Pair<'_> {
             let other = self.other.pose(fraction);
             let left = 1.0 - fraction;
             let rest = Rest { way: way * left, turning: left * turning + 2.0 * self.target };
-            let gap = self.look(caster, &other, fraction, rest, buffers);
+            let gap = self.find_manifolds(caster, &other, fraction, rest, buffers);
             let mut apart = gap / fastest;
             for local in &buffers.found {
                 let (gap, normal) = (local.lower_bound() - self.margin, other.rotation.rotate(local.normal));
@@ -141,7 +141,7 @@ impl Pair<'_> {
 
     /// Finds the manifolds after a fraction of the step, up to the distance that the remaining motion may
     /// close. Returns a lower bound of the distance to all geometry without a manifold.
-    fn look(
+    fn find_manifolds(
         &self,
         caster: Caster,
         other: &WorldPose,
@@ -158,7 +158,7 @@ impl Pair<'_> {
         let is_foreign = |shape: &Shape| matches!(shape, Shape::Foreign(_));
         let is_composite = |shape: &Shape| matches!(shape, Shape::Composite(_));
         let motion = other.rotation.inverse_rotate(rest.way);
-        let look = Look { motion, ..Look::up_to(rest.turning + self.margin) };
+        let query = ManifoldQuery { motion, ..ManifoldQuery::up_to(rest.turning + self.margin) };
         let ball;
         let (shape, pose) = match caster {
             Caster::Whole => (b.shape, b.pose(fraction)),
@@ -182,7 +182,7 @@ impl Pair<'_> {
             return near - self.margin;
         }
         if is_composite(a.shape) || is_composite(shape) {
-            manifold::collide_each_part(a.shape, shape, &pose, look, parts, found);
+            manifold::collide_each_part(a.shape, shape, &pose, query, parts, found);
             return f32::INFINITY;
         }
         let mut local = LocalManifold::default();
@@ -196,14 +196,14 @@ impl Pair<'_> {
     /// `distance`.
     pub(super) fn gap_at_start(&self, distance: f32, buffers: &mut CastBuffers) -> f32 {
         let rest = Rest { way: Vector::ZERO, turning: distance };
-        self.look(Caster::Whole, &self.other.pose(0.0), 0.0, rest, buffers);
+        self.find_manifolds(Caster::Whole, &self.other.pose(0.0), 0.0, rest, buffers);
         buffers.found.iter().map(|local| local.lower_bound() - self.margin).fold(f32::INFINITY, min)
     }
 
     /// The depth of overlap at the end of the step; 0 if the shapes do not overlap.
     pub(super) fn depth_at_end(&self, buffers: &mut CastBuffers) -> f32 {
         let rest = Rest { way: Vector::ZERO, turning: 0.0 };
-        self.look(Caster::Whole, &self.other.pose(1.0), 1.0, rest, buffers);
+        self.find_manifolds(Caster::Whole, &self.other.pose(1.0), 1.0, rest, buffers);
         let depths = buffers.found.iter().map(|local| self.margin - local.lower_bound());
         depths.fold(0.0, max)
     }

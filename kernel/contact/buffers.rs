@@ -1,12 +1,12 @@
 //! What one worker of the narrow phase computes with, and what it leaves for the table.
 
-use super::record::{Lost, Manifold, Parallel, Sliding};
+use super::record::{LostImpulse, Manifold, Parallel, Sliding};
 use super::recycle::RecycleBatch;
 use crate::manifold::{CompositeBuffers, LocalManifold};
 use crate::math::Vector;
 
-/// Buffers of one worker, kept between steps. They are written with every contact, so each worker's are in cache lines of
-/// their own.
+/// Buffers of one worker, kept between steps. They are written with every contact, so each worker's are in
+/// cache lines of their own.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub struct WorkerBuffers {
@@ -23,18 +23,20 @@ pub struct WorkerBuffers {
     pub(super) stored: Vec<(u32, usize)>,
     /// The manifolds of `stored`, one contact's after the other's.
     pub(super) pool: Vec<Manifold>,
-    /// Colliders that slide, by each of their contacts with points, and whether its manifolds have to be compared in any case.
+    /// Colliders that slide, by each of their contacts with points, and whether its manifolds have to be
+    /// compared in any case.
     pub(super) sliding: Vec<(u32, bool)>,
     /// The manifolds of the sliding collider at hand.
     pub(super) slides: Vec<Sliding>,
     /// Those that are parallel.
     pub(super) parallel: Vec<Parallel>,
-    /// Contacts, and the numbers of those of their manifolds, whose [`is_internal`](Manifold::is_internal) changes.
+    /// Contacts, and the numbers of those of their manifolds, whose
+    /// [`is_internal`](Manifold::is_internal) changes.
     pub(super) internal: Vec<(u32, u32)>,
     /// Manifolds that get other normals, from the ground to the collider.
     pub(super) turned: Vec<(u32, u32, Vector)>,
     /// Points under load that sliding colliders lost.
-    pub(super) lost: Vec<Lost>,
+    pub(super) lost: Vec<LostImpulse>,
     /// Whether any contact overlaps deeply.
     pub(super) any_deep: bool,
 }

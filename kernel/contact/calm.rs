@@ -1,8 +1,10 @@
-//! What follows from a look at a contact: its bits of deep overlap and platform, and how long it needs no other look.
+//! What follows from an update of a contact: its bits of deep overlap and platform, and how long it needs no
+//! other update.
 //!
-//! A look tells how far the surfaces may move against each other until the manifold is to be computed anew. Half of that way is
-//! what the bodies may travel until the next look. Each body adds up a bound of its surface's way. The solver stores the
-//! separations at its end, as long as they are those of the next step's start.
+//! An update tells how far the surfaces may move against each other until the manifold is to be computed
+//! anew. Half of that way is what the bodies may travel until the next update. Each body adds up a bound of
+//! its surface's way. The solver stores the separations at its end, as long as they are those of the next
+//! step's start.
 
 use super::input::{Sides, smaller};
 use super::record::{Contact, ContactFlags};
@@ -27,15 +29,15 @@ impl Contact {
         self.flags.has(ContactFlags::FROZEN) && !self.flags.any(LOOKED_AT)
     }
 
-    /// When the manifold is computed anew: the next update has to look at it.
+    /// When the manifold is computed anew: the next update may not leave it as it is.
     #[inline(always)]
     pub(super) fn excite(&mut self, poses: [&BodyPose; 2]) {
         self.calm_until = travel(poses);
         self.flags.set(ContactFlags::CALM, false);
     }
 
-    /// After a look. Until the manifold is to be computed anew, surfaces may move by `allowed` metres, of which they have
-    /// `moved`.
+    /// After an update. Until the manifold is to be computed anew, surfaces may move by `allowed` metres, of
+    /// which they have `moved`.
     #[inline(always)]
     pub(super) fn calm_down(&mut self, poses: [&BodyPose; 2], scale: TravelScale, allowed: f32, moved: f32) {
         let way = allowed * CALM_SHARE - moved;
@@ -53,7 +55,7 @@ fn travel([a, b]: [&BodyPose; 2]) -> u32 {
 }
 
 impl Sides<'_> {
-    /// Whether a contact needs no look. Its separations have to be stored again until the next time.
+    /// Whether a contact needs no update. Its separations have to be stored again until the next time.
     #[inline(always)]
     pub(super) fn is_calm(&self, contact: &mut Contact) -> bool {
         let &Self { input, poses, .. } = self;
@@ -79,8 +81,9 @@ impl Sides<'_> {
         input.sliding_side(contact).is_none()
     }
 
-    /// Sets the bits that follow from a recomputed manifold: that of deep overlap, and that the embedder has changed nothing.
-    /// Only contacts whose bodies were `placed` where they are can become deep. What pushes nothing is never deep.
+    /// Sets the bits that follow from a recomputed manifold: that of deep overlap, and that the embedder has
+    /// changed nothing. Only contacts whose bodies were `placed` where they are can become deep. What pushes
+    /// nothing is never deep.
     #[inline(always)]
     pub(super) fn after_recomputing(&self, contact: &mut Contact, placed: bool) {
         let deep = match (contact.flags.has(ContactFlags::DEEP), placed && !contact.is_inert()) {
@@ -108,8 +111,8 @@ impl Sides<'_> {
         deepest < 0.0 && deepest < -share * reach
     }
 
-    /// Sets the bits that name the platform, the body which contacts do not turn. Two round shapes have none, since one can
-    /// roll under the same normal; what stands on its flat end is not round there.
+    /// Sets the bits that name the platform, the body which contacts do not turn. Two round shapes have none,
+    /// since one can roll under the same normal; what stands on its flat end is not round there.
     #[inline(always)]
     pub(super) fn set_platform(&self, contact: &mut Contact) {
         let is_round = |side: usize| match self.shapes()[side] {

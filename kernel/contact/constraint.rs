@@ -1,7 +1,7 @@
-//! What contacts and other constraints between two bodies have in common: how they take their place in colours and
-//! islands, and how they wake.
+//! What contacts and other constraints between two bodies have in common: how they take their place in
+//! colours and islands, and how they wake.
 
-use super::link::Link;
+use super::manager::ContactManager;
 use crate::graph::{ColorSlot, ConstraintId, ConstraintKind, LinkId};
 use crate::table::{BodyKind, NONE};
 
@@ -14,9 +14,9 @@ pub(super) struct Tie {
     pub(super) slot: Option<ColorSlot>,
 }
 
-impl Link<'_> {
-    /// Connects two live, different bodies by a constraint of a kind. They wake, and are in one island from now on. Returns
-    /// its id.
+impl ContactManager<'_> {
+    /// Connects two live, different bodies by a constraint of a kind. They wake, and are in one island from
+    /// now on. Returns its id.
     pub(crate) fn connect(&mut self, kind: ConstraintKind, bodies: [u32; 2]) -> u32 {
         debug_assert!(kind != ConstraintKind::Contact, "contacts are created from colliders");
         self.wake_bodies(bodies);
@@ -159,8 +159,8 @@ impl Link<'_> {
         }
     }
 
-    /// Checks a constraint against colours and islands. Returns whether it has a colour, and whether a kinematic body that
-    /// moves carries it.
+    /// Checks a constraint against colours and islands. Returns whether it has a colour, and whether a
+    /// kinematic body that moves carries it.
     ///
     /// # Panics
     /// With the invariant that does not hold.

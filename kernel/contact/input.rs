@@ -8,8 +8,8 @@ use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach, Ve
 
 /// Computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign).
 pub trait ManifoldSource: Sync {
-    /// Adds the manifolds of colliders `a` and `b`, `pose` being where B is in A's frame: in A's frame with normals from A to
-    /// B, with points up to `prediction` metres apart.
+    /// Adds the manifolds of colliders `a` and `b`, `pose` being where B is in A's frame: in A's frame with
+    /// normals from A to B, with points up to `prediction` metres apart.
     fn manifolds(&self, colliders: [u32; 2], pose: &Pose, prediction: f32, out: &mut Vec<LocalManifold>);
 
     /// The same for a collider and a ball, whose centre is given in the collider's frame.
@@ -54,8 +54,9 @@ pub struct NarrowPhaseInput<'a> {
 }
 
 impl<'a> NarrowPhaseInput<'a> {
-    /// Input with the usual lengths for shapes of about a metre: a tolerance of 5 mm, prediction up to 2 cm, recycling up
-    /// to 5 cm. `source` is `&()` if no shape is [foreign](crate::shape::Shape::Foreign), `dt` is in seconds.
+    /// Input with the usual lengths for shapes of about a metre: a tolerance of 5 mm, prediction up to 2 cm,
+    /// recycling up to 5 cm. `source` is `&()` if no shape is [foreign](crate::shape::Shape::Foreign), `dt`
+    /// is in seconds.
     pub fn new(
         bodies: &'a BodyTable,
         colliders: &'a ColliderTable,
@@ -112,8 +113,8 @@ impl NarrowPhaseInput<'_> {
         body != NONE && self.bodies[body].kind == BodyKind::Dynamic
     }
 
-    /// What a [`ManifoldSource`] is asked of a contact with a foreign shape: where B is in A's frame, and how far apart points
-    /// may be.
+    /// What a [`ManifoldSource`] is asked of a contact with a foreign shape: where B is in A's frame, and how
+    /// far apart points may be.
     pub fn foreign_view(&self, contact: &Contact) -> (Pose, f32) {
         let mut fixed = [None; 2];
         let sides = self.sides(contact, &mut fixed);
@@ -127,8 +128,8 @@ pub(super) struct Sides<'a> {
     pub(super) input: &'a NarrowPhaseInput<'a>,
     pub(super) colliders: [u32; 2],
     pub(super) bodies: [u32; 2],
-    /// The poses of the bodies; of a collider without one, its own. By reference: a copy is written in other pieces than it is
-    /// read in, which a processor waits for.
+    /// The poses of the bodies; of a collider without one, its own. By reference: a copy is written in other
+    /// pieces than it is read in, which a processor waits for.
     pub(super) poses: [&'a BodyPose; 2],
 }
 
@@ -201,8 +202,8 @@ impl<'a> Sides<'a> {
         [of(a, poses[0]), of(b, poses[1])]
     }
 
-    /// The distance up to which contacts are predicted at rest: no body's speculative margin is exceeded. What does not
-    /// move has none.
+    /// The distance up to which contacts are predicted at rest: no body's speculative margin is exceeded.
+    /// What does not move has none.
     pub(super) fn near(&self) -> f32 {
         let [a, b] = self.reaches().map(|reach| match reach.turning {
             0.0 => f32::MAX,
@@ -220,8 +221,8 @@ impl<'a> Sides<'a> {
         if is_beyond { velocity * (margin / way.length()) } else { velocity }
     }
 
-    /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if nothing turns. The
-    /// velocity of each body is limited by its own speculative margin.
+    /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if
+    /// nothing turns. The velocity of each body is limited by its own speculative margin.
     pub(super) fn prediction(&self) -> f32 {
         max(self.near(), self.predicted_motion().length())
     }

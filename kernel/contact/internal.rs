@@ -1,18 +1,19 @@
 //! Internal edges: edges and sides of pieces that together are one surface.
 //!
-//! A body that slides over flush tiles, or over the triangles of a mesh, meets the sides and edges of the pieces ahead. Each
-//! piece alone is an obstacle; together they are a plane. So the manifolds of a collider are compared: one whose points on
-//! the ground all lie on the plane of another manifold, or below it, stops nothing that the other does not hold already, and
-//! is not solved. Points on a kerb, a wall or the other side of a groove lie above that plane. A body that has only its foot at
-//! a wall has no such point: there the wall itself is looked at, whether it goes on above the plane.
+//! A body that slides over flush tiles, or over the triangles of a mesh, meets the sides and edges of the
+//! pieces ahead. Each piece alone is an obstacle; together they are a plane. So the manifolds of a collider
+//! are compared: one whose points on the ground all lie on the plane of another manifold, or below it, stops
+//! nothing that the other does not hold already, and is not solved. Points on a kerb, a wall or the other
+//! side of a groove lie above that plane. A body that has only its foot at a wall has no such point: there
+//! the wall itself is looked at, whether it goes on above the plane.
 //!
-//! Only manifolds of moving colliders with ground are compared: what is not dynamic, or is dynamic and at rest. The result
-//! depends on positions and velocities, not on the number of threads.
+//! Only manifolds of moving colliders with ground are compared: what is not dynamic, or is dynamic and at
+//! rest. The result depends on positions and velocities, not on the number of threads.
 
 use super::buffers::WorkerBuffers;
+use super::impulse_transfer;
 use super::input::{NarrowPhaseInput, smaller};
-use super::load;
-use super::manifolds;
+use super::manifold_update;
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint, Parallel, Sliding};
 use super::table::{ContactTable, PointCount};
 use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
@@ -125,7 +126,8 @@ impl<'a> Seen<'a> {
         other.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(self.normal))) - self.plane()
     }
 
-    /// The least height of a plane, with a normal of a group, that has all of its points at most so far above it that they are flush.
+    /// The least height of a plane, with a normal of a group, that has all of its points at most so far above
+    /// it that they are flush.
     fn least_top(&self, group: &Parallel) -> f32 {
         let (mut top, mut reach): (f32, f32) = (f32::NEG_INFINITY, 0.0);
         for [p, _] in self.points() {
@@ -135,8 +137,8 @@ impl<'a> Seen<'a> {
         top - self.flush - rounding * reach.sqrt()
     }
 
-    /// Whether another manifold, which is not parallel, holds what this one would stop. If all points of both are in one place, it does
-    /// where the other's plane is that of both pieces of ground.
+    /// Whether another manifold, which is not parallel, holds what this one would stop. If all points of both
+    /// are in one place, it does where the other's plane is that of both pieces of ground.
     fn is_held_by(&self, other: &Seen, is_plane_of_both: impl FnOnce() -> bool) -> bool {
         let highest = other.highest(self);
         if !(highest <= self.flush) {
@@ -163,8 +165,8 @@ enum Role {
     Obstacle,
     /// Another one holds what it would stop.
     Internal,
-    /// The collider is to be stopped by it along another normal: that of a plane which its side is a little askew to, or that of a
-    /// wall whose foot its upper side leans over.
+    /// The collider is to be stopped by it along another normal: that of a plane which its side is a little
+    /// askew to, or that of a wall whose foot its upper side leans over.
     Turned(Vector),
 }
 
@@ -213,8 +215,9 @@ impl NarrowPhaseInput<'_> {
         }
     }
 
-    /// Notes a contact whose manifolds are to be compared with others of the same collider, and the manifolds of one that slides no
-    /// more. `extra` are its recycled manifolds after the first; `has_more` tells whether it has several, recycled or new.
+    /// Notes a contact whose manifolds are to be compared with others of the same collider, and the manifolds
+    /// of one that slides no more. `extra` are its recycled manifolds after the first; `has_more` tells
+    /// whether it has several, recycled or new.
     #[inline(always)]
     pub(super) fn note_sliding(
         &self,
@@ -237,8 +240,8 @@ impl NarrowPhaseInput<'_> {
         }
     }
 
-    /// How far the ground on the other side of a contact reaches in a direction, from the centre of mass of the side's body; `None` for
-    /// surfaces and planes.
+    /// How far the ground on the other side of a contact reaches in a direction, from the centre of mass of
+    /// the side's body; `None` for surfaces and planes.
     fn top(&self, contact: &Contact, side: usize, direction: Vector) -> Option<f32> {
         let mut fixed = [None; 2];
         let sides = self.sides(contact, &mut fixed);
@@ -263,7 +266,8 @@ impl NarrowPhaseInput<'_> {
         let highest = seen.points().map(|[p, _]| p).reduce(|a, b| if b.dot(up) > a.dot(up) { b } else { a });
         let Some(foot) = highest.filter(|_| steepness > 0.0) else { return false };
         let height = RISES * seen.flush;
-        // Up along the ground, or straight up and a little into it: a normal that points down may be the collider's.
+        // Up along the ground, or straight up and a little into it: a normal that points down may be
+        // the collider's.
         let direction =
             if cos >= 0.0 { along * (1.0 / steepness) } else { up - level * (0.25 / level.length()) };
         let probe = foot + direction * (holding.plane() + height - foot.dot(up));
@@ -272,13 +276,13 @@ impl NarrowPhaseInput<'_> {
         let place = WorldPose::new(sides.poses[side].center + probe.to_world(), Rot::IDENTITY);
         let pose = sides.shape_poses()[1 - side].relative(&place);
         let ball = Ball { radius: 0.5 * height + sides.margin() };
-        manifolds::touches(sides.shapes()[1 - side], ball, &pose, worker)
+        manifold_update::touches(sides.shapes()[1 - side], ball, &pose, worker)
     }
 }
 
 impl ContactTable {
-    /// Marks the manifolds of internal edges of the colliders that the workers noted, so that they are not solved. Adds their
-    /// points to those that were lost.
+    /// Marks the manifolds of internal edges of the colliders that the workers noted, so that they are not
+    /// solved. Adds their points to those that were lost.
     pub(super) fn mark_internal(
         &mut self,
         input: &NarrowPhaseInput,
@@ -308,7 +312,7 @@ impl ContactTable {
             let side = usize::from(contact.flags.has(ContactFlags::SLIDES_B));
             let was = *self.manifold(contact, index).expect("the manifold was looked at");
             if !was.is_internal && input.match_points {
-                load::note_internal((id, index), side, contact, &was, &mut lost);
+                impulse_transfer::note_internal((id, index), side, contact, &was, &mut lost);
             }
             let manifold = self.manifold_mut(id, index);
             manifold.is_internal = !was.is_internal;
@@ -319,7 +323,8 @@ impl ContactTable {
                 manifold.points.iter_mut().for_each(|p| (p.impulse, p.total_impulse) = (0.0, 0.0));
             }
             let contact = &mut self.contacts[id as usize];
-            // The collider passes an edge, and meets the face behind it. Of a composite, one contact has both.
+            // The collider passes an edge, and meets the face behind it. Of a composite, one
+            // contact has both.
             if !contact.flags.has(ContactFlags::COMPOSITE) {
                 contact.flags.set(ContactFlags::FROZEN, false);
             }
@@ -430,7 +435,8 @@ impl ContactTable {
             let others = all[group.range.clone()].iter().take_while(|other| !(other.height < least));
             for other in others.filter(|other| !this.is_parallel(other)) {
                 let holding = self.see(input, other);
-                // An edge of the collider is at a seam: the next piece ends at the plane of this one, but not the other way round.
+                // An edge of the collider is at a seam: the next piece ends at the plane of this one, but not
+                // the other way round.
                 let mut ends_at = |of: &Sliding, own: &Seen, plane: &Seen| {
                     let contact = self.get(of.contact);
                     let top = input.top(contact, of.side, plane.normal);
@@ -489,7 +495,8 @@ impl ContactTable {
         manifold.normal = new;
     }
 
-    /// Whether the first of two colliders stands on the second, whose plane has this normal: then its foot is an obstacle.
+    /// Whether the first of two colliders stands on the second, whose plane has this normal: then its foot
+    /// is an obstacle.
     fn stands_on(&self, [standing, ground]: [u32; 2], normal: Vector) -> bool {
         standing != ground
             && self.find(standing, ground).is_some_and(|id| {

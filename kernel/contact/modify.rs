@@ -6,8 +6,9 @@ use crate::data::BitSet;
 use crate::table::NONE;
 
 impl ContactTable {
-    /// Replaces the manifolds of a contact after the update of this step; the next update computes them anew. `changed` is what the
-    /// update found to begin and end; this contact is entered or removed there as is now true.
+    /// Replaces the manifolds of a contact after the update of this step; the next update computes them
+    /// anew. `changed` is what the update found to begin and end; this contact is entered or removed there
+    /// as is now true.
     ///
     /// Manifolds without points, or with values that are not finite, are left out.
     pub fn change(
@@ -90,7 +91,8 @@ mod tests {
         (m, ManifoldSurface { friction: 0.5, ..ManifoldSurface::default() })
     }
 
-    /// A table with one contact of two colliders, which touched before the last update or not, and does now or not.
+    /// A table with one contact of two colliders, which touched before the last update or not, and
+    /// does now or not.
     fn table(touched: bool, touches: bool) -> (ContactTable, BitSet) {
         let (mut bodies, mut colliders) = (BodyTable::default(), ColliderTable::default());
         for _ in 0..2 {

@@ -1,33 +1,35 @@
-//! The narrow phase, top to bottom: awake contacts are classified by their boxes and motion, then recycled or recomputed,
-//! and what only the table can store is committed at the end.
+//! The narrow phase, top to bottom: awake contacts are classified by their boxes and motion, then recycled or
+//! recomputed, and what only the table can store is committed at the end.
 //!
-//! Helpers are called from here and do not call back: [`recycle`](super::recycle) keeps manifolds, [`manifolds`] and [`sweep`]
-//! compute them, [`load`](super::load) hands on their impulses, [`calm`](super::calm) holds what follows from them.
+//! Helpers are called from here and do not call back: [`recycle`](super::recycle) keeps manifolds,
+//! [`manifold_update`] and [`time_of_impact`] compute them, [`impulse_transfer`](super::impulse_transfer)
+//! transfers their impulses, [`calm`](super::calm) holds what follows from them.
 #![expect(unsafe_code, reason = "several threads change contacts, each other ones")]
 
 use super::buffers::WorkerBuffers;
+use super::impulse_transfer::PreviousManifold;
 use super::input::{NarrowPhaseInput, Sides};
-use super::load::Before;
-use super::manifolds;
+use super::manifold_update;
 use super::record::{Contact, ContactFlags, Frozen, Manifold};
-use super::sweep::{self, Meeting};
 use super::table::{ContactTable, PointCount, Stored};
+use super::time_of_impact::{self, Meeting};
 use crate::data::{BitSet, Parts};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Vector, max, min};
 use crate::table::NONE;
 use crate::thread_pool::ThreadPool;
 
-/// The size of a block of contacts, in words of 64 ids. Recycling a block takes some microseconds. Smaller blocks cost more
-/// to hand out; larger ones balance worse.
+/// The size of a block of contacts, in words of 64 ids. Recycling a block takes some microseconds. Smaller
+/// blocks cost more to hand out; larger ones balance worse.
 const BLOCK: usize = 2;
 
-/// The prefetch distance, in contacts. Shorter does not hide the latency of memory; longer evicts records before use.
+/// The prefetch distance, in contacts. Shorter does not hide the latency of memory; longer evicts
+/// records before use.
 const PREFETCH_DISTANCE: usize = 4;
 
 impl ContactTable {
-    /// Updates all awake contacts. `workers` are buffers, kept between steps. `changed` receives the contacts that began or
-    /// ended to touch or whose boxes came apart.
+    /// Updates all awake contacts. `workers` are buffers, kept between steps. `changed` receives the contacts
+    /// that began or ended to touch or whose boxes came apart.
     pub fn update(
         &mut self,
         input: &NarrowPhaseInput,
@@ -46,7 +48,7 @@ impl ContactTable {
         self.find_crowded(input);
         let Self { contacts, points, active, extra, .. } = self;
         let crowded = self.any_deep.then_some(&self.crowded);
-        let pass = Pass {
+        let update = ContactUpdate {
             input,
             contacts: Parts::of(contacts),
             points: Parts::of(points),
@@ -62,11 +64,11 @@ impl ContactTable {
                 count += 1;
             }
             // SAFETY: a worker runs one block at a time, and an id is in one block, once.
-            unsafe { pass.update_block(&ids[..count], buffers.one(worker)) };
+            unsafe { update.update_block(&ids[..count], buffers.one(worker)) };
         });
         self.commit(workers, changed);
         self.mark_internal(input, pool, workers);
-        self.hand_on(input);
+        self.transfer_impulses(input);
     }
 
     /// Finds the dynamic bodies that overlap others deeply.
@@ -84,8 +86,8 @@ impl ContactTable {
         }
     }
 
-    /// Commits what the workers found. Manifolds after the first are stored in the order of contacts, not of workers, so that
-    /// equal steps give equal tables.
+    /// Commits what the workers found. Manifolds after the first are stored in the order of contacts, not of
+    /// workers, so that equal steps give equal tables.
     fn commit(&mut self, workers: &[WorkerBuffers], changed: &mut BitSet) {
         self.any_deep = workers.iter().any(|worker| worker.any_deep);
         let mut stored = core::mem::take(&mut self.stored);
@@ -107,7 +109,7 @@ impl ContactTable {
 }
 
 /// An update of all contacts while it runs; shared by the workers.
-struct Pass<'a> {
+struct ContactUpdate<'a> {
     input: &'a NarrowPhaseInput<'a>,
     contacts: Parts<'a, Contact>,
     points: Parts<'a, PointCount>,
@@ -116,7 +118,7 @@ struct Pass<'a> {
     crowded: Option<&'a BitSet>,
 }
 
-impl<'a> Pass<'a> {
+impl<'a> ContactUpdate<'a> {
     /// Updates some contacts.
     ///
     /// # Safety
@@ -142,7 +144,8 @@ impl<'a> Pass<'a> {
                 self.recompute(id, contact, unsafe { self.points.one(id as usize) }, worker);
             }
             if worker.batch.is_full() {
-                // SAFETY: the batch holds contacts of this block, and the references above are in use no more.
+                // SAFETY: the batch holds contacts of this block, and the references above are
+                // in use no more.
                 unsafe { self.recycle_batch(worker) };
             }
         }
@@ -150,7 +153,8 @@ impl<'a> Pass<'a> {
         unsafe { self.recycle_batch(worker) };
     }
 
-    /// Recycles the contacts of the batch where the motion allows it, recomputes the others, and empties the batch.
+    /// Recycles the contacts of the batch where the motion allows it, recomputes the others, and
+    /// empties the batch.
     ///
     /// # Safety
     /// While it runs no other thread may have one of these contacts, nor its count of points.
@@ -196,7 +200,7 @@ impl<'a> Pass<'a> {
     /// # Safety
     /// While it runs no other thread may have the contact.
     unsafe fn separate(&self, id: u32, contact: &mut Contact, worker: &mut WorkerBuffers) {
-        if let Some(before) = Before::of(self.input, contact) {
+        if let Some(before) = PreviousManifold::of(self.input, contact) {
             // SAFETY: by the contract.
             let extra = unsafe { self.extra(contact) };
             before.note_lost(id, contact, extra, core::iter::empty(), &mut worker.lost);
@@ -214,7 +218,7 @@ impl<'a> Pass<'a> {
         let touched = contact.flags.has(ContactFlags::TOUCHING);
         // SAFETY: by the contract the contact is this thread's, and its slot belongs to no other.
         let old_extra = unsafe { self.extra(contact) };
-        let before = Before::of(self.input, contact);
+        let before = PreviousManifold::of(self.input, contact);
         recompute(self.input, contact, old_extra, is_crowded, worker);
         if let Some(before) = before {
             let new = core::iter::once(&contact.manifold).chain(&worker.extra);
@@ -238,7 +242,8 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// Computes the manifolds of a contact at the present poses, or those of its swept shapes, and freezes it there.
+/// Computes the manifolds of a contact at the present poses, or those of its swept shapes, and
+/// freezes it there.
 fn recompute(
     input: &NarrowPhaseInput,
     contact: &mut Contact,
@@ -265,16 +270,16 @@ fn recompute(
         search_native(&sides, contact, &mut buffers.local)
     };
     if contact.flags.has(ContactFlags::SENSOR) && search.meeting.is_none() {
-        let gap = manifolds::keep_met(&sides, &mut buffers.local);
+        let gap = manifold_update::keep_met(&sides, &mut buffers.local);
         search.prediction = min(search.prediction, gap);
     }
     freeze(&sides, contact, &search, &buffers.local);
-    manifolds::replace(&sides, contact, old_extra, search.meeting.as_ref(), buffers);
+    manifold_update::replace(&sides, contact, old_extra, search.meeting.as_ref(), buffers);
     if contact.flags.any(ContactFlags::TOUCHING.union(ContactFlags::COMPOSITE)) {
         sides.set_platform(contact);
     }
-    // Only what has just come together, or was changed by hand, was placed where it is; all else was pressed there,
-    // unless its bodies are crowded by those that were placed.
+    // Only what has just come together, or was changed by hand, was placed where it is; all else was pressed
+    // there, unless its bodies are crowded by those that were placed.
     sides.after_recomputing(contact, is_crowded || is_changed);
 }
 
@@ -288,15 +293,16 @@ struct Search {
     has_far: bool,
 }
 
-/// Computes the manifolds of a pair with a foreign shape. It is not swept, but looked at as far as turning may close.
+/// Computes the manifolds of a pair with a foreign shape. It is not swept, but looked at as far as
+/// turning may close.
 fn search_foreign(sides: &Sides, contact: &Contact, buffers: &mut WorkerBuffers) -> Search {
     let (pose, farthest) = sides.input.foreign_view(contact);
     sides.input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.local);
     Search { prediction: sides.prediction(), meeting: None, has_far: false }
 }
 
-/// Computes the manifolds of a pair with a composite shape: of the parts nearby, and of those that the step's motion meets.
-/// Parts are looked at as far as turning may close.
+/// Computes the manifolds of a pair with a composite shape: of the parts nearby, and of those that the step's
+/// motion meets. Parts are looked at as far as turning may close.
 fn search_parts(sides: &Sides, contact: &mut Contact, buffers: &mut WorkerBuffers) -> Search {
     let (prediction, margin) = (sides.prediction(), sides.margin());
     let farthest = sides.farthest(prediction);
@@ -308,16 +314,20 @@ fn search_parts(sides: &Sides, contact: &mut Contact, buffers: &mut WorkerBuffer
     let motion = if prediction > near { sides.predicted_motion() } else { Vector::ZERO };
     let turning = farthest - prediction;
     let near = near + turning;
-    let met = if sweep::is_straight(sides) { sweep::met_at(sides) + turning } else { f32::INFINITY };
-    let gap = manifolds::collide_parts(sides, contact, near + margin, (motion, met + margin), buffers);
+    let met = if time_of_impact::is_straight(sides) {
+        time_of_impact::met_at(sides) + turning
+    } else {
+        f32::INFINITY
+    };
+    let gap = manifold_update::collide_parts(sides, contact, near + margin, (motion, met + margin), buffers);
     // Without any part the gap is infinite.
     let known = if buffers.local.is_empty() && gap.is_finite() { max(gap - margin, near) } else { near };
     let known = min(known, buffers.composite.passed() - margin);
     Search { prediction: known, meeting: None, has_far: false }
 }
 
-/// Computes the manifold of two native shapes where they are now. If they do not touch, that of when the step's motion
-/// brings them together.
+/// Computes the manifold of two native shapes where they are now. If they do not touch, that of when the
+/// step's motion brings them together.
 #[inline(always)]
 fn search_native(sides: &Sides, contact: &mut Contact, found: &mut Vec<LocalManifold>) -> Search {
     let (prediction, margin) = (sides.prediction(), sides.margin());
@@ -332,9 +342,9 @@ fn search_native(sides: &Sides, contact: &mut Contact, found: &mut Vec<LocalMani
     // Negated, so that a NaN is not taken for a gap.
     if !(gap > with_margin) || !(gap - margin > farthest) {
         // What touches may slap down within the step with points that are far yet.
-        let slaps = farthest > prediction && sweep::is_straight(sides);
+        let slaps = farthest > prediction && time_of_impact::is_straight(sides);
         let up_to = if slaps { farthest + margin } else { with_margin };
-        until_lag = manifolds::collide(sides, contact, up_to, &mut local);
+        until_lag = manifold_update::collide(sides, contact, up_to, &mut local);
         if local.lower_bound() > with_margin {
             local = LocalManifold { gap: local.lower_bound(), ..LocalManifold::default() };
             until_lag = f32::INFINITY;
@@ -343,18 +353,18 @@ fn search_native(sides: &Sides, contact: &mut Contact, found: &mut Vec<LocalMani
         if local.count == 0 {
             // Shapes that turn are often much farther apart than their boxes.
             gap = max(gap, local.gap);
-            meeting = sweep::find_meeting(sides, contact, gap - margin, prediction, &mut local);
-        } else if prediction > sides.near() && sweep::may_pass_by(sides, &local) {
+            meeting = time_of_impact::find_meeting(sides, contact, gap - margin, prediction, &mut local);
+        } else if prediction > sides.near() && time_of_impact::may_pass_by(sides, &local) {
             gap = max(gap, local.lower_bound());
             looked_up_to = gap - margin;
             let present = local;
-            meeting = sweep::find_meeting(sides, contact, gap - margin, prediction, &mut local);
-            if meeting.is_none() && !sweep::pushes(sides, &present) {
+            meeting = time_of_impact::find_meeting(sides, contact, gap - margin, prediction, &mut local);
+            if meeting.is_none() && !time_of_impact::pushes(sides, &present) {
                 local = present;
             }
         }
         if meeting.is_none() && until_lag == f32::INFINITY {
-            meeting = sweep::lead(sides, contact, with_margin, &mut local);
+            meeting = time_of_impact::midstep_contact(sides, contact, with_margin, &mut local);
         }
     }
     if local.count == 0 {
@@ -364,8 +374,8 @@ fn search_native(sides: &Sides, contact: &mut Contact, found: &mut Vec<LocalMani
     Search { prediction: min(prediction, until_lag), meeting, has_far }
 }
 
-/// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is not recycled,
-/// nor a sensor's with points, which would be kept while the shapes part.
+/// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is
+/// not recycled, nor a sensor's with points, which would be kept while the shapes part.
 #[inline(always)]
 fn freeze(sides: &Sides, contact: &mut Contact, search: &Search, found: &[LocalManifold]) {
     contact.frozen = Frozen {

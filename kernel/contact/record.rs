@@ -16,8 +16,8 @@ impl ContactFlags {
     pub const SENSOR: Self = Self(1 << 1);
     /// Neither body moves by impulses: no rows, no colour, no island.
     pub const IMMOVABLE: Self = Self(1 << 2);
-    /// A shape is known only to the embedder. Manifolds come from its [`ManifoldSource`](super::ManifoldSource), and are not
-    /// recycled.
+    /// A shape is known only to the embedder. Manifolds come from its
+    /// [`ManifoldSource`](super::ManifoldSource), and are not recycled.
     pub const FOREIGN: Self = Self(1 << 3);
     /// The frozen pose is valid: the manifold may be recycled.
     pub const FROZEN: Self = Self(1 << 4);
@@ -30,7 +30,8 @@ impl ContactFlags {
     /// Body B is not dynamic: normal and anchors turn with it.
     pub const PLATFORM_B: Self = Self(1 << 8);
 
-    /// A shape is [composite](crate::shape::Composite), and no shape is foreign: there may be several manifolds.
+    /// A shape is [composite](crate::shape::Composite), and no shape is foreign: there may be
+    /// several manifolds.
     pub const COMPOSITE: Self = Self(1 << 9);
 
     /// The embedder changed the manifolds in this step; their surfaces are not the contact's.
@@ -47,8 +48,8 @@ impl ContactFlags {
     /// A shape is a hull. As it turns, faces come near that a full manifold has no points of.
     pub const HULL: Self = Self(1 << 14);
 
-    /// The separations, if there are any, are those at the end of the last step, and the bodies' travels are compared with those up to
-    /// which there is no look.
+    /// The separations, if there are any, are those at the end of the last step, and the bodies' travels are
+    /// compared with those up to which there is no update.
     pub const CALM: Self = Self(1 << 15);
 
     /// Whether all bits of `other` are set.
@@ -77,7 +78,8 @@ impl ContactFlags {
 pub struct ManifoldPoint {
     /// From body A's centre of mass, in world axes, at the frozen pose.
     pub anchor: Vector,
-    /// The separation at the frozen pose, in metres. Of shapes that meet later in the step it is that of when they meet.
+    /// The separation at the frozen pose, in metres. Of shapes that meet later in the step it is that of
+    /// when they meet.
     pub frozen_separation: f32,
     /// The separation now, in metres.
     pub separation: f32,
@@ -99,13 +101,14 @@ pub struct Manifold {
     pub points: [ManifoldPoint; MAX_POINTS],
     /// The number of points.
     pub count: u8,
-    /// Whether an edge inside a surface made it: another manifold holds what it would stop, so it is not solved.
+    /// Whether an edge inside a surface made it: another manifold holds what it would stop, so it
+    /// is not solved.
     pub is_internal: bool,
     /// The groups of the facets of A and B that made it, 0 for the materials of the colliders; see
     /// [`FacetMaterials`](crate::table::FacetMaterials).
     pub groups: [u8; 2],
-    /// The radii of A and B around their cores (centre, axis, polygon), in metres. Anchors are of the cores: as a round shape
-    /// turns, its contact keeps its place relative to the core, not on the surface.
+    /// The radii of A and B around their cores (centre, axis, polygon), in metres. Anchors are of the cores:
+    /// as a round shape turns, its contact keeps its place relative to the core, not on the surface.
     pub radii: [f32; 2],
     /// The friction impulse in world axes, N·s; the next step starts from it.
     pub friction_impulse: Vector,
@@ -165,13 +168,14 @@ pub struct ManifoldSurface {
     pub friction: f32,
     /// The coefficient of restitution, not negative.
     pub restitution: f32,
-    /// The velocity that friction gives B's surface relative to A's, in world axes, m/s. Only what lies in the tangent plane counts.
+    /// The velocity that friction gives B's surface relative to A's, in world axes, m/s. Only what lies in
+    /// the tangent plane counts.
     pub velocity: Vector,
 }
 
-/// The impulse of a point that a sliding collider lost, to be handed on.
+/// The impulse of a point that a sliding collider lost, to be transferred to another point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lost {
+pub(super) struct LostImpulse {
     pub(super) contact: u32,
     /// Its number among those of the contact.
     pub(super) number: u32,
@@ -184,7 +188,8 @@ pub(super) struct Lost {
     pub(super) impulse: f32,
 }
 
-/// Manifolds of a sliding collider that are parallel: normals lie around that of the first, by less than half of what counts.
+/// Manifolds of a sliding collider that are parallel: normals lie around that of the first, by less than half
+/// of what counts.
 #[derive(Clone, Debug)]
 pub(super) struct Parallel {
     pub(super) normal: Vector,
@@ -194,9 +199,9 @@ pub(super) struct Parallel {
     pub(super) range: core::ops::Range<usize>,
 }
 
-/// A point of a sliding collider that lost load may be handed on to.
+/// A point of a sliding collider that may receive a lost impulse.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bearing {
+pub(super) struct LoadPoint {
     pub(super) contact: u32,
     /// The number of the manifold in the contact.
     pub(super) index: u32,
@@ -243,8 +248,8 @@ pub struct Frozen {
     pub rotations: [Rot; 2],
     /// From A's to B's centre of mass.
     pub offset: Vector,
-    /// The distance up to which points were looked for. If there are none, a lower bound of the distance between the shapes.
-    /// Margins are subtracted; in metres.
+    /// The distance up to which points were looked for. If there are none, a lower bound of the distance
+    /// between the shapes. Margins are subtracted; in metres.
     pub prediction: f32,
 }
 
@@ -265,7 +270,8 @@ pub struct Contact {
     pub flags: ContactFlags,
     /// The number of manifolds in the side pool.
     pub extra_count: u16,
-    /// The sum of both bodies' [travels](crate::table::BodyPose::travel) up to which the contact needs no look.
+    /// The sum of both bodies' [travels](crate::table::BodyPose::travel) up to which the contact
+    /// needs no update.
     pub calm_until: u32,
     /// The pose at which the manifold was computed.
     pub frozen: Frozen,
@@ -311,7 +317,8 @@ impl Contact {
         self.flags.has(ContactFlags::TOUCHING) && !self.is_inert()
     }
 
-    /// Whether its bodies may pass through each other: it detects only, or the embedder dropped its manifolds in this step.
+    /// Whether its bodies may pass through each other: it detects only, or the embedder dropped its manifolds
+    /// in this step.
     pub fn is_let_through(&self) -> bool {
         let is_dropped = self.flags.has(ContactFlags::CHANGED) && !self.flags.has(ContactFlags::TOUCHING);
         is_dropped || self.flags.any(ContactFlags::SENSOR.union(ContactFlags::QUIET))

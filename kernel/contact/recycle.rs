@@ -1,17 +1,18 @@
 //! Recycling, of several contacts side by side.
 //!
-//! Recycling is Erin Catto's (Box2D v3.2, Box3D; both ask to be cited for it). While two bodies have hardly moved relative
-//! to each other since their manifold was computed, its normal, anchors and features are kept, and only the separations
-//! follow the motion. The frozen pose stays the same, so errors cannot add up. Frozen anchors save time and let tall
-//! towers stand.
+//! Recycling is Erin Catto's (Box2D v3.2, Box3D; both ask to be cited for it). While two bodies have hardly
+//! moved relative to each other since their manifold was computed, its normal, anchors and features are kept,
+//! and only the separations follow the motion. The frozen pose stays the same, so errors cannot add up.
+//! Frozen anchors save time and let tall towers stand.
 //!
-//! Decision: a platform is a body that contacts do not turn. The frozen pose (normal, anchors, rotations) turns as a whole
-//! with it. Only rounding adds up, as a random walk. Between dynamic bodies the frozen pose does not turn: where normals
-//! follow every small turn, a tower of 50 boxes leans further and further, and falls.
+//! Decision: a platform is a body that contacts do not turn. The frozen pose (normal, anchors, rotations)
+//! turns as a whole with it. Only rounding adds up, as a random walk. Between dynamic bodies the frozen
+//! pose does not turn: where normals follow every small turn, a tower of 50 boxes leans further and
+//! further, and falls.
 //!
-//! In a scene at rest nearly all contacts are recycled, each by the same arithmetic. So [`RecycleBatch::push`] copies the
-//! numbers of a contact into a row, and [`RecycleBatch::evaluate`] computes with as many rows side by side as a lane has
-//! floats.
+//! In a scene at rest nearly all contacts are recycled, each by the same arithmetic. So
+//! [`RecycleBatch::push`] copies the numbers of a contact into a row, and [`RecycleBatch::evaluate`] computes
+//! with as many rows side by side as a lane has floats.
 #![expect(unsafe_code, reason = "rows of numbers are turned into lanes of numbers")]
 
 use super::input::{NarrowPhaseInput, Sides, smaller};
@@ -28,7 +29,8 @@ const NO_PLATFORM: f32 = 0.0;
 const PLATFORM_A: f32 = 1.0;
 const PLATFORM_B: f32 = 2.0;
 
-/// An upper bound of the ratio of a chord to twice [`small_turn`](Rot::small_turn), for turns up to [`RECYCLE_COS`].
+/// An upper bound of the ratio of a chord to twice [`small_turn`](Rot::small_turn), for turns up to
+/// [`RECYCLE_COS`].
 pub(crate) const CHORD: f32 = 1.016;
 
 /// What recycling reads of a contact, or of several side by side: the numbers are in the same order.
@@ -101,7 +103,8 @@ impl<N: Lane> RecycleRow<N> {
             // SAFETY: `quad` is below `QUADS`.
             unsafe { lanes.as_mut_ptr().cast::<[N; 4]>().add(quad).write(four) };
         }
-        // SAFETY: all quads are written, and `Self`, `repr(C)` of nothing but `N`, is the first `FLOATS` lanes in order.
+        // SAFETY: all quads are written, and `Self`, `repr(C)` of nothing but `N`, is the first `FLOATS`
+        // lanes in order.
         unsafe { lanes.as_ptr().cast::<Self>().read() }
     }
 }
@@ -202,15 +205,16 @@ impl RecycleBatch {
         self.evaluate_at(&Settings { dt, tolerance, recycle_distance }, Width::of(input.narrow));
     }
 
-    /// How far the surfaces of a contact may move against each other until its manifold is to be computed anew, if they do not close
-    /// within a step, and how far they have. `place` is the contact's index in the batch, which was evaluated.
+    /// How far the surfaces of a contact may move against each other until its manifold is to be computed
+    /// anew, if they do not close within a step, and how far they have. `place` is the contact's index in the
+    /// batch, which was evaluated.
     #[inline(always)]
     pub(super) fn ways(&self, place: usize) -> [f32; 2] {
         self.ways[place]
     }
 
-    /// Lets a contact that keeps its manifold follow the motion of its bodies; `false` if it does not keep it. `place` is
-    /// the contact's index in the batch, which was evaluated.
+    /// Lets a contact that keeps its manifold follow the motion of its bodies; `false` if it does not keep
+    /// it. `place` is the contact's index in the batch, which was evaluated.
     #[inline(always)]
     pub(super) fn apply(&self, place: usize, contact: &mut Contact, extra: &mut [Manifold]) -> bool {
         let is_kept = self.kept & 1 << place != 0;
@@ -290,11 +294,12 @@ impl RecycleRow {
 }
 
 impl<N: Lane> RecycleRow<N> {
-    /// Whether the bodies moved little enough against each other. Also how far their surfaces may move while nothing closes, and how
-    /// far they have.
+    /// Whether the bodies moved little enough against each other. Also how far their surfaces may move while
+    /// nothing closes, and how far they have.
     ///
-    /// No point of one surface moved further against the other than `moved`. So shapes that were `prediction` apart are
-    /// still `prediction - moved` apart, and keep that they have no points until the rest may close in the step.
+    /// No point of one surface moved further against the other than `moved`. So shapes that were
+    /// `prediction` apart are still `prediction - moved` apart, and keep that they have no points until the
+    /// rest may close in the step.
     #[inline(always)]
     fn is_kept(&self, settings: &Settings) -> (N::Mask, [N; 2]) {
         let &Self { offset, prediction, count, extents, turning, .. } = self;
@@ -302,9 +307,10 @@ impl<N: Lane> RecycleRow<N> {
         let turns = self.turns();
         let straight = N::splat(RECYCLE_COS);
         let is_straight = N::and(straight.le(turns[0].cos_angle()), straight.le(turns[1].cos_angle()));
-        // `moved` is the shift of one centre of mass in the frame of the other, plus the angle between both turns times
-        // a reach. The shifting body is B, but A if B is static: a static body may be large or a half-space. The reach is
-        // at least that of either moving body, so that normals and anchors stay valid on the larger one.
+        // `moved` is the shift of one centre of mass in the frame of the other, plus the angle between both
+        // turns times a reach. The shifting body is B, but A if B is static: a static body may be large or a
+        // half-space. The reach is at least that of either moving body, so that normals and anchors stay
+        // valid on the larger one.
         let is_a = N::and(turning[1].eq(N::ZERO), N::ZERO.lt(extents[0]));
         let frame = Rot::select(is_a, turns[1], turns[0]);
         let reach = N::select(is_a, extents[0], extents[1]).max(turning[0].max(turning[1]));
@@ -324,7 +330,8 @@ impl<N: Lane> RecycleRow<N> {
             curved = N::select(is_flat, curved.min(extent * extent / radius), curved);
         }
         let errors = N::select(is_round, errors.min(curved * N::splat(KEPT)), errors);
-        // A manifold that is not complete may lack points that were too far apart. None of these may close in this step.
+        // A manifold that is not complete may lack points that were too far apart. None of these may close
+        // in this step.
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));
         let allowed = N::select(count.eq(N::ZERO), without_points, with_points);
@@ -374,16 +381,17 @@ impl<N: Lane> RecycleRow<N> {
         (self.speed + turning) * dt
     }
 
-    /// The present separations: s = s₀ + n · (Δ + (Q_B − 1) r_B − (Q_A − 1) r_A), where Q are the turns of the bodies and Δ
-    /// is the shift of B's centre of mass, both seen from the frozen pose, which may turn as a whole.
+    /// The present separations: s = s₀ + n · (Δ + (Q_B − 1) r_B − (Q_A − 1) r_A), where Q are the turns
+    /// of the bodies and Δ is the shift of B's centre of mass, both seen from the frozen pose, which may
+    /// turn as a whole.
     #[inline(always)]
     fn separations(&self) -> [N; 4] {
         let frame = Rot::select(self.is_turned(), self.platform_turn(), Rot::IDENTITY);
         let normal = self.normal;
         let along = (self.change() + frame.unturn(self.offset_now)).dot(normal);
         let cores = [normal * self.radii[0], self.offset - normal * self.radii[1]];
-        // n · (Q r − r) = (Q⁻¹ n − n) · r, of which only r differs from point to point. Without `map`: a closure that is not
-        // inlined here makes a call of each lane operation.
+        // n · (Q r − r) = (Q⁻¹ n − n) · r, of which only r differs from point to point. Without `map`: a
+        // closure that is not inlined here makes a call of each lane operation.
         let [turn_a, turn_b] = self.turns();
         let back = frame.inverse();
         let leans = [back.mul(turn_a).unturn(normal), back.mul(turn_b).unturn(normal)];
@@ -408,8 +416,8 @@ fn platform(flags: ContactFlags) -> f32 {
     }
 }
 
-/// Turns the frozen pose of a contact and its manifolds with the platform. `rotations` are the present ones of both
-/// bodies.
+/// Turns the frozen pose of a contact and its manifolds with the platform. `rotations` are the present ones
+/// of both bodies.
 #[inline(never)]
 fn turn(contact: &mut Contact, extra: &mut [Manifold], rotations: [Rot; 2]) {
     let own = usize::from(contact.flags.has(ContactFlags::PLATFORM_B));
@@ -499,7 +507,8 @@ mod tests {
     }
 
     proptest! {
-        /// Results are the same bits with any width, whatever else is in the batch and was in the rows before.
+        /// Results are the same bits with any width, whatever else is in the batch and was in
+        /// the rows before.
         #[test]
         fn side_by_side_is_as_alone(rows in prop::collection::vec(row(), 1..=RecycleBatch::SIZE), dirt in row()) {
             for width in [Width::default(), Width::Four] {

@@ -1,6 +1,6 @@
 //! All contacts by id, the map from pairs to contacts, and the set of awake contacts.
 
-use super::record::{Bearing, Contact, ContactFlags, Lost, Manifold, ManifoldSurface};
+use super::record::{Contact, ContactFlags, LoadPoint, LostImpulse, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, Parts, Slack, prefetch};
 use crate::math::DIM;
 use crate::table::{BodyKind, BodyTable, ColliderDef, ColliderTable, NONE};
@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 /// All contacts.
 ///
-/// One dense array by id with the first manifold inline. Native pairs have one manifold, so a step follows no pointer and
-/// allocates nothing. Further manifolds, of composite foreign shapes, are in a side pool.
+/// One dense array by id with the first manifold inline. Native pairs have one manifold, so a step follows no
+/// pointer and allocates nothing. Further manifolds, of composite foreign shapes, are in a side pool.
 #[derive(Clone, Debug, Default)]
 pub struct ContactTable {
     ids: IdPool,
@@ -25,8 +25,8 @@ pub struct ContactTable {
     active_count: usize,
     /// Contacts that are active in this update only.
     pub(super) visited: Vec<u32>,
-    /// Whether the solver sums the impulses of each point over the substeps of a step, for apps that read them. Off by
-    /// default: it costs time.
+    /// Whether the solver sums the impulses of each point over the substeps of a step, for apps that read
+    /// them. Off by default: it costs time.
     pub sum_impulses: bool,
     /// Whether the last update found a deeply overlapping contact.
     pub(crate) any_deep: bool,
@@ -47,9 +47,9 @@ pub struct ContactTable {
     /// Colliders that slide; empty between updates.
     pub(super) sliders: BitSet,
     /// Points under load that sliding colliders lost; empty between updates.
-    pub(super) lost: Vec<Lost>,
+    pub(super) lost: Vec<LostImpulse>,
     /// The points of a sliding collider; empty between updates.
-    pub(super) bearings: Vec<Bearing>,
+    pub(super) load_points: Vec<LoadPoint>,
     /// How many contacts there are, step by step.
     slack: Slack,
     /// Whether buffers are given back in this step.
@@ -94,7 +94,8 @@ impl PointCount {
 }
 
 impl ContactTable {
-    /// The bytes kept of each contact, without two bits, the [`pairs`](Self::pairs), and manifolds after the first.
+    /// The bytes kept of each contact, without two bits, the [`pairs`](Self::pairs), and manifolds
+    /// after the first.
     pub const BYTES_PER_CONTACT: usize =
         size_of::<Contact>() + size_of::<PointCount>() + size_of::<[u32; 2]>();
 
@@ -214,7 +215,8 @@ impl ContactTable {
         }
     }
 
-    /// Makes ids that were freed before this usable again: to be called in every step. Gives back what a crowd needed that is gone.
+    /// Makes ids that were freed before this usable again: to be called in every step. Gives back what a
+    /// crowd needed that is gone.
     pub fn recycle_ids(&mut self) {
         self.ids.recycle();
         self.gives_back = self.slack.is_due(self.len());
@@ -286,10 +288,10 @@ impl ContactTable {
         id
     }
 
-    /// Whether a pair in a crowd needs no contact: one of both colliders has as many as there are colours, and both overlap
-    /// others deeply, or each other. Bodies that were placed into each other come apart without it, and n of them have
-    /// contacts in proportion to n, not n². The pair is searched again when a collider is
-    /// [relieved](ColliderTable::relieved).
+    /// Whether a pair in a crowd needs no contact: one of both colliders has as many as there are colours,
+    /// and both overlap others deeply, or each other. Bodies that were placed into each other come apart
+    /// without it, and n of them have contacts in proportion to n, not n². The pair is searched again when a
+    /// collider is [relieved](ColliderTable::relieved).
     #[inline]
     pub fn is_superfluous(&self, pair: [u32; 2], colliders: &ColliderTable, bodies: &BodyTable) -> bool {
         pair.into_iter().any(|id| colliders.is_full(id)) && self.is_in_crowd(pair, colliders, bodies)
@@ -424,7 +426,8 @@ impl ManifoldsView<'_> {
         }
     }
 
-    /// The same at the end of a step, and whether its separations are to be set to those of now, as the next update may keep them.
+    /// The same at the end of a step, and whether its separations are to be set to those of now, as the next
+    /// update may keep them.
     ///
     /// # Safety
     /// As [`manifold`](Self::manifold).

@@ -1,5 +1,5 @@
-//! Waking and carried islands, against brute force and by the number of visited bodies. The table does not depend on the
-//! workers that updated it.
+//! Waking and carried islands, against brute force and by the number of visited bodies. The table does not
+//! depend on the workers that updated it.
 
 use super::*;
 use crate::data::BitSet;
@@ -31,7 +31,7 @@ impl World {
         let mut world = Self::default();
         for kind in kinds {
             let body = world.bodies.add(kind, Vector::ZERO, WorldPose::IDENTITY);
-            world.link().enter(body);
+            world.contact_manager().enter(body);
             let def = ColliderDef::new(shape.clone(), body);
             assert_eq!(world.colliders.add(def, WorldPose::IDENTITY, &mut world.bodies), body);
         }
@@ -50,8 +50,8 @@ impl World {
         world
     }
 
-    fn link(&mut self) -> Link<'_> {
-        Link {
+    fn contact_manager(&mut self) -> ContactManager<'_> {
+        ContactManager {
             bodies: &mut self.bodies,
             colliders: &mut self.colliders,
             contacts: &mut self.contacts,
@@ -62,17 +62,17 @@ impl World {
 
     /// Lets two bodies begin to touch, or end it if they do.
     fn touch(&mut self, a: u32, b: u32) {
-        let id = self.contacts.find(a, b).unwrap_or_else(|| self.link().create(a, b));
+        let id = self.contacts.find(a, b).unwrap_or_else(|| self.contact_manager().create(a, b));
         let flags = &mut self.contacts.get_mut(id).flags;
         flags.set(ContactFlags::TOUCHING, !flags.has(ContactFlags::TOUCHING));
         let mut changed = BitSet::new();
         changed.insert(id);
-        self.link().apply(&changed, |_, _, _| {});
+        self.contact_manager().apply(&changed, |_, _, _| {});
     }
 
     /// Applies an empty set of changes.
     fn settle(&mut self) {
-        self.link().apply(&BitSet::new(), |_, _, _| {});
+        self.contact_manager().apply(&BitSet::new(), |_, _, _| {});
     }
 
     /// Whether a moving kinematic body touches a body of the island, by testing every contact.
@@ -92,7 +92,7 @@ fn visits(count: u32, change: impl Fn(&mut World)) -> usize {
     VISITS.set(0);
     change(&mut world);
     let visits = VISITS.get();
-    world.link().validate();
+    world.contact_manager().validate();
     visits
 }
 
@@ -112,11 +112,11 @@ fn issue_a_collider_of_another_material_gave_up_the_place_of_its_contacts() {
     let change = |world: &mut World, id: u32, change: fn(&mut ColliderDef)| {
         let mut def = world.colliders[id].def.clone();
         change(&mut def);
-        let mut link = world.link();
-        link.colliders.redefine(id, def, link.bodies);
-        link.reflag_of_collider(id);
+        let mut manager = world.contact_manager();
+        manager.colliders.redefine(id, def, manager.bodies);
+        manager.reflag_of_collider(id);
         let visits = VISITS.get();
-        link.validate();
+        manager.validate();
         visits
     };
     let visits = change(&mut world, 40, |def| def.margin = 0.1);
@@ -138,7 +138,7 @@ fn removing_all_of_a_heap_looks_at_each_body_a_few_times() {
     for count in [100, 1_000, 10_000] {
         let seen = visits(count, |world| {
             for id in 0..count {
-                world.link().destroy_of_collider(id);
+                world.contact_manager().destroy_of_collider(id);
             }
             world.settle();
         });
@@ -152,9 +152,9 @@ fn despawning_all_of_a_heap_looks_at_each_body_a_few_times() {
     for count in [100, 1_000, 10_000] {
         let seen = visits(count, |world| {
             for id in 0..count {
-                world.link().destroy_of_collider(id);
+                world.contact_manager().destroy_of_collider(id);
                 world.colliders.remove(id, &mut world.bodies);
-                world.link().leave(id);
+                world.contact_manager().leave(id);
             }
             world.settle();
         });
@@ -168,7 +168,7 @@ fn waking_every_body_of_a_heap_looks_at_each_once_a_step() {
     for count in [100, 1_000, 10_000] {
         let seen = visits(count, |world| {
             for _ in 0..3 {
-                (0..count).for_each(|id| world.link().wake_body(id));
+                (0..count).for_each(|id| world.contact_manager().wake_body(id));
                 world.settle();
             }
         });
@@ -187,7 +187,7 @@ fn a_woken_island_rests_anew_before_it_sleeps() {
     };
     rest(&mut world, 1.0);
     assert_eq!(scan(&mut world), 1);
-    world.link().wake_body(7);
+    world.contact_manager().wake_body(7);
     assert_eq!(scan(&mut world), 0, "nobody has looked at the others yet");
     assert_eq!(world.bodies[7].sleep_timer, 0.0, "the body itself is told at once");
     world.settle();
@@ -202,11 +202,11 @@ fn a_woken_island_rests_anew_before_it_sleeps() {
 
     // From sleep, all timers are reset at once, and no mark remains.
     let island = world.islands.island_of(0).unwrap();
-    world.link().sleep_island(island);
-    world.link().wake_body(3);
+    world.contact_manager().sleep_island(island);
+    world.contact_manager().wake_body(3);
     assert!((0..40).all(|id| world.bodies[id].sleep_timer == 0.0 && world.bodies[id].awake));
     assert!(!world.islands.is_woken(island));
-    world.link().validate();
+    world.contact_manager().validate();
 }
 
 /// A mark of a small island holds for the large one it merges with, and for both parts after a split.
@@ -221,7 +221,7 @@ fn a_woken_body_rests_anew_in_whatever_island_it_comes_to() {
     mark(&mut world, 4);
     world.touch(3, 4);
     assert!([4, 5].into_iter().all(|id| world.bodies[id].sleep_timer == 0.0));
-    world.link().validate();
+    world.contact_manager().validate();
 
     world.touch(3, 4);
     mark(&mut world, 0);
@@ -229,7 +229,7 @@ fn a_woken_body_rests_anew_in_whatever_island_it_comes_to() {
     assert_eq!(world.islands.split(island).len(), 1);
     world.settle();
     assert!((0..6).all(|id| world.bodies[id].sleep_timer == 0.0));
-    world.link().validate();
+    world.contact_manager().validate();
 }
 
 /// A source of varying numbers of manifolds, different in each round.
@@ -263,7 +263,7 @@ fn the_table_is_the_same_to_the_byte_whatever_pool_updated_it() {
         for id in 0..count {
             world.colliders.refresh(id, &world.bodies, Fattening { margin: 0.1, dt: 0.01 });
             if id > 0 {
-                world.link().create(id - 1, id);
+                world.contact_manager().create(id - 1, id);
             }
         }
         let pool = ThreadPool::new(workers);
@@ -274,14 +274,14 @@ fn the_table_is_the_same_to_the_byte_whatever_pool_updated_it() {
             let input = NarrowPhaseInput::new(&world.bodies, &world.colliders, &source, 0.01);
             let mut changed = BitSet::new();
             world.contacts.update(&input, &pool, &mut buffers, &mut changed);
-            world.link().apply(&changed, |_, _, _| {});
-            world.link().validate();
+            world.contact_manager().apply(&changed, |_, _, _| {});
+            world.contact_manager().validate();
             // Freed places are used again.
             world.contacts.recycle_ids();
             for id in (round..count).step_by(50).filter(|id| *id > 0) {
                 let contact = world.contacts.find(id - 1, id).unwrap();
-                world.link().destroy(contact);
-                world.link().create(id - 1, id);
+                world.contact_manager().destroy(contact);
+                world.contact_manager().create(id - 1, id);
             }
         }
         let more = world.contacts.iter().filter(|(_, contact)| contact.extra_count > 0).count();
@@ -306,19 +306,21 @@ fn a_visited_sensor_at_rest_is_updated_once() {
         for id in 0..2 {
             world.colliders.refresh(id, &world.bodies, Fattening { margin: 0.1, dt: 0.01 });
         }
-        let id = world.link().create(0, 1);
+        let id = world.contact_manager().create(0, 1);
         let pool = ThreadPool::new(1);
         let update = |world: &mut World| {
             let input = NarrowPhaseInput::new(&world.bodies, &world.colliders, &(), 0.01);
             let mut changed = BitSet::new();
             world.contacts.update(&input, &pool, &mut Vec::new(), &mut changed);
             let mut began = 0;
-            world.link().apply(&changed, |_, _, status| began += usize::from(status == Status::Began));
-            world.link().validate();
+            world
+                .contact_manager()
+                .apply(&changed, |_, _, status| began += usize::from(status == Status::Began));
+            world.contact_manager().validate();
             began
         };
         assert_eq!(update(&mut world), 0, "nothing is awake");
-        world.link().visit_of_collider(1);
+        world.contact_manager().visit_of_collider(1);
         assert!(world.contacts.is_active(id));
         assert_eq!(update(&mut world), usize::from(touches), "{distance}");
         assert!(!world.contacts.is_active(id), "visited once");
@@ -344,20 +346,20 @@ proptest! {
             let island = world.islands.island_of(a);
             match (kind, island) {
                 (0..10, _) if a != b => world.touch(a, b),
-                (10..13, _) => world.link().set_kinematic_awake(a, y % 2 == 0),
-                (13, _) => world.link().retype(a, KINDS[b as usize % 3]),
+                (10..13, _) => world.contact_manager().set_kinematic_awake(a, y % 2 == 0),
+                (13, _) => world.contact_manager().retype(a, KINDS[b as usize % 3]),
                 (14, Some(island)) => _ = world.islands.split(island),
-                (15, Some(island)) => world.link().sleep_island(island),
-                (16, _) => world.link().wake_body(a),
-                (17, _) => world.link().destroy_of_collider(a),
+                (15, Some(island)) => world.contact_manager().sleep_island(island),
+                (16, _) => world.contact_manager().wake_body(a),
+                (17, _) => world.contact_manager().destroy_of_collider(a),
                 (18, Some(island)) => world.islands.mark_woken(island),
                 (19, _) => world.settle(),
                 _ => {}
             }
-            world.link().validate();
+            world.contact_manager().validate();
             for island in world.islands.islands().collect::<Vec<_>>() {
                 let expected = world.is_carried_by_definition(island);
-                prop_assert_eq!(world.link().is_carried(island), expected);
+                prop_assert_eq!(world.contact_manager().is_carried(island), expected);
             }
         }
     }

@@ -12,21 +12,21 @@ pub(crate) enum Approach<T, M> {
     Met(M),
 }
 
-/// Advances the time from `start` to the time at which two shapes meet. `look` gets a time and the number of
-/// the round, from 1 to `rounds`. It returns how close the shapes are at that time, or `None` if they do not
-/// meet.
+/// Advances the time from `start` to the time at which two shapes meet. `evaluate` gets a time and the
+/// number of the round, from 1 to `rounds`. It returns how close the shapes are at that time, or `None` if
+/// they do not meet.
 ///
-/// Shapes that are still apart after the last round count as a miss, unless `look` returns [`Approach::Met`]
-/// in it.
+/// Shapes that are still apart after the last round count as a miss, unless `evaluate` returns
+/// [`Approach::Met`] in it.
 #[inline(always)]
 pub(crate) fn advance<T, M>(
     start: T,
     rounds: usize,
-    mut look: impl FnMut(T, usize) -> Option<Approach<T, M>>,
+    mut evaluate: impl FnMut(T, usize) -> Option<Approach<T, M>>,
 ) -> Option<M> {
     let mut time = start;
     for round in 1..=rounds {
-        match look(time, round)? {
+        match evaluate(time, round)? {
             Approach::ApartUntil(later) => time = later,
             Approach::Met(meeting) => return Some(meeting),
         }

@@ -1,9 +1,10 @@
-//! Contact manifolds of composite shapes: part by part, merged into few. Closed convex surfaces are the solids that they bound.
+//! Contact manifolds of composite shapes: part by part, merged into few. Closed convex surfaces are the
+//! solids that they bound.
 
 use super::dim::{Convex, face_normal, with_convex};
 use super::merge::{Merging, merge};
-use super::parts::{PartBuffers, Pass, Skin};
-use super::{FeatureCache, LocalManifold, Look};
+use super::parts::{ClosedSurface, PartBuffers, PartQuery};
+use super::{FeatureCache, LocalManifold, ManifoldQuery};
 use crate::math::{Pose, min};
 use crate::shape::{Aabb, Composite, Part, Shape};
 use crate::tuning::sweeps::CORE_SHARE;
@@ -25,37 +26,38 @@ impl CompositeBuffers {
     }
 }
 
-/// Adds the manifolds of two shapes of which at least one is composite, in A's frame; see [`collide`](super::collide). Returns a
-/// lower bound of the distance between the shapes: infinite if no part is near, 0 if there are points.
+/// Adds the manifolds of two shapes of which at least one is composite, in A's frame; see
+/// [`collide`](super::collide). Returns a lower bound of the distance between the shapes: infinite if no part
+/// is near, 0 if there are points.
 pub fn collide_composite(
     a: &Shape,
     b: &Shape,
     pose_b_in_a: &Pose,
-    look: Look<'_>,
+    query: ManifoldQuery<'_>,
     buffers: &mut CompositeBuffers,
     out: &mut Vec<LocalManifold>,
 ) -> f32 {
     let cache = Cell::new(buffers.cache);
-    let gap = collide_parts([a, b], pose_b_in_a, look, false, &cache, &mut buffers.parts);
+    let gap = collide_parts([a, b], pose_b_in_a, query, false, &cache, &mut buffers.parts);
     buffers.cache = cache.get();
     let start = out.len();
     merge(&mut buffers.parts.found, &mut buffers.merging, out);
-    out[start..].iter_mut().for_each(|m| m.place_on_mover(look.ground));
+    out[start..].iter_mut().for_each(|m| m.place_on_mover(query.ground));
     if buffers.parts.found.is_empty() { gap } else { 0.0 }
 }
 
-/// Adds the manifolds of all parts, each as if it were alone, in A's frame: of those within the prediction, and of those that the
-/// motion may meet. Their normals and separations are slabs between convex shapes.
+/// Adds the manifolds of all parts, each as if it were alone, in A's frame: of those within the prediction,
+/// and of those that the motion may meet. Their normals and separations are slabs between convex shapes.
 pub fn collide_each_part(
     a: &Shape,
     b: &Shape,
     pose_b_in_a: &Pose,
-    look: Look<'_>,
+    query: ManifoldQuery<'_>,
     buffers: &mut CompositeBuffers,
     out: &mut Vec<LocalManifold>,
 ) {
     let cache = Cell::new(FeatureCache::NONE);
-    collide_parts([a, b], pose_b_in_a, look, true, &cache, &mut buffers.parts);
+    collide_parts([a, b], pose_b_in_a, query, true, &cache, &mut buffers.parts);
     out.extend_from_slice(&buffers.parts.found);
 }
 
@@ -63,38 +65,38 @@ pub fn collide_each_part(
 fn collide_parts(
     [a, b]: [&Shape; 2],
     pose_b_in_a: &Pose,
-    look: Look<'_>,
+    query: ManifoldQuery<'_>,
     alone: bool,
     cache: &Cell<FeatureCache>,
     buffers: &mut PartBuffers,
 ) -> f32 {
     buffers.clear();
     let is_usable = pose_b_in_a.position.is_finite() && pose_b_in_a.rotation.is_finite();
-    if !(is_usable && look.prediction.is_finite() && look.motion.is_finite()) {
+    if !(is_usable && query.prediction.is_finite() && query.motion.is_finite()) {
         return 0.0;
     }
     let pose_a_in_b = pose_b_in_a.inverse();
-    let of_a = forms([a, b], pose_b_in_a, look, 0, alone);
-    let of_b = forms([b, a], &pose_a_in_b, look, 1, alone);
+    let of_a = forms([a, b], pose_b_in_a, query, 0, alone);
+    let of_b = forms([b, a], &pose_a_in_b, query, 1, alone);
     // A composite first, of two the larger one.
     let is_b = match (of_a, of_b) {
         ((_, None), (_, None)) => !(a.ball_around().1 >= b.ball_around().1),
         ((parts, _), (_, whole)) => parts.is_none() || whole.is_none(),
     };
-    let (first, second, pose, look) = match is_b {
-        false => (of_a, of_b, pose_b_in_a, look),
-        true => (of_b, of_a, &pose_a_in_b, look.swapped(pose_b_in_a)),
+    let (first, second, pose, query) = match is_b {
+        false => (of_a, of_b, pose_b_in_a, query),
+        true => (of_b, of_a, &pose_a_in_b, query.swapped(pose_b_in_a)),
     };
     // Points are on B if both are composite.
     let on_composite = is_b && of_a.0.is_some();
     let gap = match (first, second) {
         ((Some(composite), whole), (_, Some(other))) => with_other(composite, other, |other| {
             let cache = whole.map(|_| cache);
-            let pass = Pass::new(composite, other, pose, look, alone);
-            Pass { on_composite, is_b, cache, ..pass }.collide(buffers)
+            let part_query = PartQuery::new(composite, other, pose, query, alone);
+            PartQuery { on_composite, is_b, cache, ..part_query }.collide(buffers)
         }),
         ((Some(large), _), (Some(small), _)) => {
-            collide_both([large, small], pose, look, alone, on_composite, buffers)
+            collide_both([large, small], pose, query, alone, on_composite, buffers)
         }
         _ => {
             debug_assert!(false, "one of the shapes is composite");
@@ -107,27 +109,28 @@ fn collide_parts(
     gap
 }
 
-/// The parts of the first of two shapes, if it is composite, and the convex shape that it is, if it is one. A closed convex surface is
-/// both, as the solid that it bounds. Not if the other shape is inside, nor if its facets have materials of their own.
+/// The parts of the first of two shapes, if it is composite, and the convex shape that it is, if it is one. A
+/// closed convex surface is both, as the solid that it bounds. Not if the other shape is inside, nor if its
+/// facets have materials of their own.
 fn forms<'a>(
     [shape, other]: [&'a Shape; 2],
     pose: &Pose,
-    look: Look<'_>,
+    query: ManifoldQuery<'_>,
     side: usize,
     alone: bool,
 ) -> (Option<&'a Composite<Shape>>, Option<&'a Shape>) {
     let Shape::Composite(composite) = shape else { return (None, Some(shape)) };
-    let solid = composite.solid().filter(|_| !alone && look.groups[side].is_empty());
+    let solid = composite.solid().filter(|_| !alone && query.groups[side].is_empty());
     let only_part = solid.and_then(|solid| solid.solids().first()).map(|(_, part)| part);
     let is_outside = |part: &Shape| {
-        if look.ground[1 - side] && !look.ground[side] || !(other.ball_around().1 < shape.ball_around().1) {
+        if query.ground[1 - side] && !query.ground[side] || !(other.ball_around().1 < shape.ball_around().1) {
             return true;
         }
         let Shape::Hull(hull) = part else { return false };
         let around = other.local_box(pose);
         let (center, half) = (around.center(), around.half());
         // What does not move may be a room. The centre of what is in it stays there.
-        let deep = if look.ground[side] { 0.0 } else { CORE_SHARE };
+        let deep = if query.ground[side] { 0.0 } else { CORE_SHARE };
         !hull.contains(center, |normal| deep * normal.abs().dot(half))
     };
     match only_part.filter(|part| is_outside(part)) {
@@ -144,12 +147,12 @@ fn with_other<R>(composite: &Composite<Shape>, other: &Shape, f: impl FnOnce(&Co
     }
 }
 
-/// Two composites: each part of the second that is near the first against all of the first. The first is the larger one: the other
-/// cannot enclose it, and so what it bounds, if it is closed, is solid to it.
+/// Two composites: each part of the second that is near the first against all of the first. The first is the
+/// larger one: the other cannot enclose it, and so what it bounds, if it is closed, is solid to it.
 fn collide_both(
     [large, small]: [&Composite<Shape>; 2],
     pose: &Pose,
-    look: Look<'_>,
+    query: ManifoldQuery<'_>,
     alone: bool,
     on_composite: bool,
     buffers: &mut PartBuffers,
@@ -158,26 +161,26 @@ fn collide_both(
     let around = bounds.rotated(inverse.rotation);
     let near = Aabb { min: around.min + inverse.position, max: around.max + inverse.position };
     let mut parts = Vec::new();
-    small.tree().query(&near.grown(look.prediction + look.motion.length()), |part| parts.push(part));
+    small.tree().query(&near.grown(query.prediction + query.motion.length()), |part| parts.push(part));
     // Parts that are not near are beyond what was looked at.
     let beyond =
-        if parts.len() < small.len() { look.prediction + look.motion.length() } else { f32::INFINITY };
-    let skin = |part: u32| {
+        if parts.len() < small.len() { query.prediction + query.motion.length() } else { f32::INFINITY };
+    let closed_surface = |part: u32| {
         let surface = small.surface().filter(|surface| surface.outward() != 0.0)?;
         let outward = pose.rotation.rotate(face_normal(surface.corners(part))?) * surface.outward();
-        Some(Skin { surface, around: small.tree().bounds(), outward })
+        Some(ClosedSurface { surface, around: small.tree().bounds(), outward })
     };
     parts.iter().fold(beyond, |gap, part| {
-        let pass = |other: &Shape, pose: &Pose, skin, buffers: &mut PartBuffers| {
-            let (name, other_group) = (part + 1, look.group(1, *part));
+        let collide_part = |other: &Shape, pose: &Pose, closed_surface, buffers: &mut PartBuffers| {
+            let (name, other_group) = (part + 1, query.group(1, *part));
             with_other(large, other, |other| {
-                let pass = Pass::new(large, other, pose, look, alone);
-                Pass { name, other_group, on_composite, skin, ..pass }.collide(buffers)
+                let part_query = PartQuery::new(large, other, pose, query, alone);
+                PartQuery { name, other_group, on_composite, closed_surface, ..part_query }.collide(buffers)
             })
         };
         let here = match small.part(*part) {
-            Part::Facet(facet) => pass(&Shape::from(facet), pose, skin(*part), buffers),
-            Part::Solid(at, solid) => pass(solid, &pose.then(at), None, buffers),
+            Part::Facet(facet) => collide_part(&Shape::from(facet), pose, closed_surface(*part), buffers),
+            Part::Solid(at, solid) => collide_part(solid, &pose.then(at), None, buffers),
         };
         min(gap, here)
     })

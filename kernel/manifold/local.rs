@@ -11,9 +11,10 @@ pub struct LocalPoint {
     pub separation: f32,
     /// The features of both shapes that make this point; equal in the next step if the features are.
     pub feature: u32,
-    /// How far [`Look::motion`](super::Look::motion) closes the shapes along the normal until they meet here, in metres; 0 if they are near
-    /// now. If not 0, the point is where they meet, moved back with the shape that moves. If both do, with that which is not
-    /// composite, or with B, and half of the distance above it.
+    /// How far [`ManifoldQuery::motion`](super::ManifoldQuery::motion) closes the shapes along the normal
+    /// until they meet here, in metres; 0 if they are near now. If not 0, the point is where they meet, moved
+    /// back with the shape that moves. If both do, with that which is not composite, or with B, and half of
+    /// the distance above it.
     pub closing: f32,
 }
 
@@ -35,9 +36,11 @@ pub struct LocalManifold {
     pub count: usize,
     /// A lower bound of the distance of shapes without points, in metres; 0 if it is not known.
     pub gap: f32,
-    /// How far the core that each surface turns about is behind it, in metres: a centre, an axis, a centre of curvature.
+    /// How far the core that each surface turns about is behind it, in metres: a centre, an axis, a centre
+    /// of curvature.
     pub radii: [f32; 2],
-    /// The groups of the facets of A and B, see [`Look::groups`](super::Look::groups); 0 without.
+    /// The groups of the facets of A and B, see
+    /// [`ManifoldQuery::groups`](super::ManifoldQuery::groups); 0 without.
     pub groups: [u8; 2],
 }
 
@@ -60,7 +63,8 @@ impl LocalManifold {
         }
     }
 
-    /// Puts points of shapes that meet later onto the shape that moves, if the other one is ground: its arms are exact then.
+    /// Puts points of shapes that meet later onto the shape that moves, if the other one is ground: its arms
+    /// are exact then.
     pub(super) fn place_on_mover(&mut self, ground: [bool; 2]) {
         let side = match ground {
             [true, false] => 1.0,

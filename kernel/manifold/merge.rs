@@ -13,7 +13,8 @@ pub(super) struct Merging {
     points: Vec<LocalPoint>,
 }
 
-/// Merges the manifolds in `found` with the same groups and about the same normal, the deepest first, and adds the results to `out`.
+/// Merges the manifolds in `found` with the same groups and about the same normal, the deepest first, and
+/// adds the results to `out`.
 pub(super) fn merge(found: &mut [LocalManifold], room: &mut Merging, out: &mut Vec<LocalManifold>) {
     let Merging { groups, points } = room;
     if let [only] = found {

@@ -1,8 +1,9 @@
 //! Contact manifolds: points with feature ids, from two shapes and their relative pose.
 //!
-//! There is one function without allocations per pair of native shapes. All of them work in the frame of shape A, with the
-//! normal from A to B; the narrow phase transforms the result to the world. Points lie midway between the two surfaces. Points
-//! have separations up to the prediction distance; those with a positive separation are speculative contacts.
+//! There is one function without allocations per pair of native shapes. All of them work in the frame of
+//! shape A, with the normal from A to B; the narrow phase transforms the result to the world. Points lie
+//! midway between the two surfaces. Points have separations up to the prediction distance; those with a
+//! positive separation are speculative contacts.
 
 mod border;
 mod composite;
@@ -10,17 +11,17 @@ mod composite;
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
 mod dim;
 mod local;
-mod look;
 mod merge;
 mod pairs;
 mod parts;
+mod query;
 mod screen;
 #[cfg(test)]
 mod tests_pairs;
 
 pub use composite::{CompositeBuffers, collide_composite, collide_each_part};
-pub use dim::lead_rims;
+pub use dim::midstep_rims;
 pub use local::{LocalManifold, LocalPoint};
-use look::PairInput;
-pub use look::{FeatureCache, Look};
 pub use pairs::collide;
+use query::PairInput;
+pub use query::{FeatureCache, ManifoldQuery};

@@ -10,12 +10,14 @@ pub(super) const FARTHEST: f32 = 1.0e15;
 
 /// The contact of two shapes, `pose_b_in_a` being where B is in A's frame; the result is in A's frame.
 ///
-/// `out` gets the points no farther apart than `prediction` metres. It has none if a pose or size is not finite, and for two
-/// half-spaces, [composites](crate::shape::Composite) and foreign shapes. The normal of overlapping shapes is that of the least
-/// penetration, or that of a face with somewhat more. Segments and triangles are two-sided.
+/// `out` gets the points no farther apart than `prediction` metres. It has none if a pose or size is not
+/// finite, and for two half-spaces, [composites](crate::shape::Composite) and foreign shapes. The normal of
+/// overlapping shapes is that of the least penetration, or that of a face with somewhat more. Segments and
+/// triangles are two-sided.
 ///
-/// `cache` is that of the same pair in the same order from the step before, or [`FeatureCache::NONE`]. The cached axis is tested
-/// first, and kept while it is as good as any other, so that resting contacts do not flip.
+/// `cache` is that of the same pair in the same order from the step before, or [`FeatureCache::NONE`].
+/// The cached axis is tested first, and kept while it is as good as any other, so that resting
+/// contacts do not flip.
 pub fn collide(
     a: &Shape,
     b: &Shape,

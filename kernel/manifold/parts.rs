@@ -1,12 +1,13 @@
 //! The parts of a composite shape that are near one convex shape, each with its contact.
 //!
-//! A facet alone ends at its borders, the surface does not. So a normal that leans over a border towards the neighbour is
-//! replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals between both facets).
+//! A facet alone ends at its borders, the surface does not. So a normal that leans over a border towards the
+//! neighbour is replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals
+//! between both facets).
 
 use super::dim::{Convex, borders, face_normal};
 use super::pairs::collide_pair;
 use super::screen::{Gaps, LANES, Screen};
-use super::{FeatureCache, LocalManifold, Look, PairInput};
+use super::{FeatureCache, LocalManifold, ManifoldQuery, PairInput};
 use crate::distance::{Approach, advance};
 use crate::math::{DIM, F32x4, Lane, MAX_POINTS, Pose, Vector, max, min};
 use crate::shape::{Aabb, Composite, NO_FACET, Shape, Surface};
@@ -14,7 +15,8 @@ use crate::tuning::manifold::{FACING, MARGIN, POKE, SAME, SAME_NORMAL, SIDEWAYS,
 use crate::tuning::sweeps::{AHEAD, MET, ROUNDS};
 use core::cell::Cell;
 
-/// Up to this number of vertices are looked through for the farthest one, for each facet that may be on the wrong side.
+/// Up to this number of vertices are looked through for the farthest one, for each facet that may be on
+/// the wrong side.
 const FEW_VERTICES: usize = 64;
 
 /// Buffers, kept between calls.
@@ -22,10 +24,10 @@ const FEW_VERTICES: usize = 64;
 pub(super) struct PartBuffers {
     parts: Vec<u32>,
     pub(super) found: Vec<LocalManifold>,
-    /// For each of `found` what it replaced, if it is doubtful.
-    doubts: Vec<Option<Doubt>>,
+    /// For each of `found` what it replaced, if it is uncertain.
+    replaced_contacts: Vec<Option<ReplacedContact>>,
     /// Near parts that the motion may lead past, with their present contacts.
-    passing: Vec<(u32, LocalManifold, Option<Doubt>)>,
+    passing: Vec<(u32, LocalManifold, Option<ReplacedContact>)>,
     /// A lower bound of the distance to parts that are passed by.
     pub(super) passed: f32,
 }
@@ -33,26 +35,27 @@ pub(super) struct PartBuffers {
 impl PartBuffers {
     pub(super) fn clear(&mut self) {
         self.found.clear();
-        self.doubts.clear();
+        self.replaced_contacts.clear();
         self.passed = f32::INFINITY;
     }
 }
 
-/// A contact that was replaced by that of the facet's own face, which is deeper or turned. It may be the right one.
+/// A contact that was replaced by that of the facet's own face, which is deeper or turned. It may be
+/// the right one.
 #[derive(Clone, Copy, Debug)]
-struct Doubt {
+struct ReplacedContact {
     normal: Vector,
     /// The least separation.
     nearest: f32,
     /// The share of the motion after which the facet meets the other shape.
     share: f32,
     /// Whether the face's contact is dropped.
-    is_needless: bool,
+    is_redundant: bool,
 }
 
 /// The closed surface that a facet is part of.
 #[derive(Clone, Copy)]
-pub(super) struct Skin<'a> {
+pub(super) struct ClosedSurface<'a> {
     pub(super) surface: &'a Surface,
     /// The box around it, in its own frame.
     pub(super) around: Aabb,
@@ -60,8 +63,9 @@ pub(super) struct Skin<'a> {
     pub(super) outward: Vector,
 }
 
-impl Skin<'_> {
-    /// The vertex of the surface that is farthest along a direction; of surfaces with many vertices the corner of their box.
+impl ClosedSurface<'_> {
+    /// The vertex of the surface that is farthest along a direction; of surfaces with many vertices the
+    /// corner of their box.
     fn farthest(&self, direction: Vector) -> Vector {
         if self.surface.vertices().len() <= FEW_VERTICES {
             return self.surface.farthest(direction);
@@ -75,41 +79,55 @@ impl Skin<'_> {
 
 /// A composite shape against a convex one, or against a part of another composite.
 #[derive(Clone, Copy)]
-pub(super) struct Pass<'a> {
+pub(super) struct PartQuery<'a> {
     pub(super) composite: &'a Composite<Shape>,
     pub(super) other: &'a Convex<'a>,
     /// The other shape in the composite's frame.
     pub(super) pose: &'a Pose,
-    /// How far to look; the motion is that of the other shape.
-    pub(super) look: Look<'a>,
+    /// The query; its motion is that of the other shape.
+    pub(super) query: ManifoldQuery<'a>,
     /// The group of the other shape.
     pub(super) other_group: u8,
-    /// Tells the features of several passes apart.
+    /// Tells the features of several part queries apart.
     pub(super) name: u32,
     /// Whether each part is collided as if it were the only one, up to the end of the motion.
     pub(super) alone: bool,
-    /// Whether points of what is met later are on the composite where it is now, not on the other shape, if both move.
+    /// Whether points of what is met later are on the composite where it is now, not on the other shape,
+    /// if both move.
     pub(super) on_composite: bool,
-    /// Whether the composite is B of the pair. Two solids are then collided in that order, which prefers faces of A.
+    /// Whether the composite is B of the pair. Two solids are then collided in that order, which
+    /// prefers faces of A.
     pub(super) is_b: bool,
     /// That of the pair, if the composite is one solid.
     pub(super) cache: Option<&'a Cell<FeatureCache>>,
     /// If the other shape is a facet of a closed surface that is smaller than the composite.
-    pub(super) skin: Option<Skin<'a>>,
+    pub(super) closed_surface: Option<ClosedSurface<'a>>,
 }
 
-impl<'a> Pass<'a> {
+impl<'a> PartQuery<'a> {
     /// A composite against a convex shape.
     pub(super) fn new(
         composite: &'a Composite<Shape>,
         other: &'a Convex<'a>,
         pose: &'a Pose,
-        look: Look<'a>,
+        query: ManifoldQuery<'a>,
         alone: bool,
     ) -> Self {
         let (other_group, name) = (0, 0);
-        let (on_composite, is_b, cache, skin) = (false, false, None, None);
-        Self { composite, other, pose, look, other_group, name, alone, on_composite, is_b, cache, skin }
+        let (on_composite, is_b, cache, closed_surface) = (false, false, None, None);
+        Self {
+            composite,
+            other,
+            pose,
+            query,
+            other_group,
+            name,
+            alone,
+            on_composite,
+            is_b,
+            cache,
+            closed_surface,
+        }
     }
 
     /// Fills `local` with the contact of a facet's face alone.
@@ -118,19 +136,19 @@ impl<'a> Pass<'a> {
         self.other.collide_face(corners, face, PairInput { pose: self.pose, prediction, cache }, local);
     }
 
-    /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of the distance to
-    /// those without.
+    /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of
+    /// the distance to those without.
     pub(super) fn collide(&self, buffers: &mut PartBuffers) -> f32 {
         let around = self.other.shape.local_box(self.pose);
         let mut parts = core::mem::take(&mut buffers.parts);
         parts.clear();
-        let near = around.swept(self.look.motion).grown(self.look.prediction);
+        let near = around.swept(self.query.motion).grown(self.query.prediction);
         self.composite.tree().query(&near, |part| parts.push(part));
         let mut gap = f32::INFINITY;
         let start = buffers.found.len();
         match self.composite.surface() {
             Some(surface) if !parts.is_empty() => {
-                let screen = Screen::new(self.other.shape, self.pose, &around, self.look.motion);
+                let screen = Screen::new(self.other.shape, self.pose, &around, self.query.motion);
                 for few in parts.chunks(LANES) {
                     let gaps = screen.gaps(surface, few);
                     let (mut near, least) = self.split(&gaps, few.len());
@@ -155,19 +173,20 @@ impl<'a> Pass<'a> {
         }
         if buffers.found.len() == start && !self.alone {
             // Who only asks whether shapes touch does not need to know how far others are.
-            if self.look.prediction <= 0.0 {
+            if self.query.prediction <= 0.0 {
                 return 0.0;
             }
             return self.composite.tree().gap_beyond(&near, &around, gap);
         }
-        self.drop_doubtful(start, buffers);
+        self.drop_redundant(start, buffers);
         gap
     }
 
-    /// The first `count` of four facets that may be near or may be met, as bits, and the least gap of the others.
+    /// The first `count` of four facets that may be near or may be met, as bits, and the least gap
+    /// of the others.
     #[inline(always)]
     fn split(&self, gaps: &Gaps, count: usize) -> (u32, f32) {
-        let Look { prediction, motion, .. } = self.look;
+        let ManifoldQuery { prediction, motion, .. } = self.query;
         let far = F32x4::splat(prediction).lt(gaps.now);
         let far = if self.alone {
             F32x4::and(far, F32x4::splat(prediction).lt(gaps.ever))
@@ -181,40 +200,46 @@ impl<'a> Pass<'a> {
         (!F32x4::bits(far) & 0xf >> (LANES - count), least)
     }
 
-    /// Drops doubtful contacts from `buffers.found[start..]` that others make needless.
-    fn drop_doubtful(&self, start: usize, buffers: &mut PartBuffers) {
-        let PartBuffers { found, doubts, .. } = buffers;
+    /// Drops uncertain contacts from `buffers.found[start..]` that others make redundant.
+    fn drop_redundant(&self, start: usize, buffers: &mut PartBuffers) {
+        let PartBuffers { found, replaced_contacts, .. } = buffers;
         for i in start..found.len() {
-            if let Some(doubt) = doubts[i] {
-                let is_needless = self.is_needless(&doubt, &found[i], &found[start..], &doubts[start..]);
-                doubts[i] = Some(Doubt { is_needless, ..doubt });
+            if let Some(replaced) = replaced_contacts[i] {
+                let is_redundant =
+                    self.is_redundant(&replaced, &found[i], &found[start..], &replaced_contacts[start..]);
+                replaced_contacts[i] = Some(ReplacedContact { is_redundant, ..replaced });
             }
         }
-        let is_kept = |doubt: &Option<Doubt>| !doubt.is_some_and(|doubt| doubt.is_needless);
-        let mut all = doubts.iter();
+        let is_kept =
+            |replaced: &Option<ReplacedContact>| !replaced.is_some_and(|replaced| replaced.is_redundant);
+        let mut all = replaced_contacts.iter();
         found.retain(|_| all.next().is_some_and(is_kept));
-        doubts.retain(is_kept);
+        replaced_contacts.retain(is_kept);
     }
 
-    /// Whether a doubtful contact is needless, because one without doubt bears the same. The side facets of a block on a wide floor
-    /// overlap it by half its width, and the bottom's contact bears the block. An edge that pokes into a wall at a seam is different:
-    /// both facets there are doubtful, so the wall's face stays unless another contact has the replaced normal.
-    fn is_needless(
+    /// Whether an uncertain contact is redundant, because a certain one bears the same. The side facets of a
+    /// block on a wide floor overlap it by half its width, and the bottom's contact bears the block. An edge
+    /// that pokes into a wall at a seam is different: both facets there are uncertain, so the wall's face
+    /// stays unless another contact has the replaced normal.
+    fn is_redundant(
         &self,
-        doubt: &Doubt,
+        replaced: &ReplacedContact,
         own: &LocalManifold,
         found: &[LocalManifold],
-        doubts: &[Option<Doubt>],
+        replaced_contacts: &[Option<ReplacedContact>],
     ) -> bool {
-        let Look { prediction, motion, .. } = self.look;
-        let at_meeting = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * doubt.share;
-        // A corner with the replaced normal is deeper in the face by 1 / cos. Contacts met later have no corner in the face yet.
+        let ManifoldQuery { prediction, motion, .. } = self.query;
+        let at_meeting = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * replaced.share;
+        // A corner with the replaced normal is deeper in the face by 1 / cos. Contacts met later have no
+        // corner in the face yet.
         let (depth, slack) = (own.lower_bound(), POKE * prediction);
-        let cos = max(own.normal.dot(doubt.normal), FACING);
-        let deepest = min(doubt.nearest, doubt.nearest / cos);
-        let is_corner = doubt.share == 0.0 && deepest - slack <= depth && depth <= doubt.nearest + slack;
-        let certain = || found.iter().zip(doubts).filter(|(_, doubt)| doubt.is_none()).map(|(m, _)| m);
-        let has_normal = |m: &LocalManifold| !is_corner || m.normal.dot(doubt.normal) > TURNED;
+        let cos = max(own.normal.dot(replaced.normal), FACING);
+        let deepest = min(replaced.nearest, replaced.nearest / cos);
+        let is_corner =
+            replaced.share == 0.0 && deepest - slack <= depth && depth <= replaced.nearest + slack;
+        let certain =
+            || found.iter().zip(replaced_contacts).filter(|(_, replaced)| replaced.is_none()).map(|(m, _)| m);
+        let has_normal = |m: &LocalManifold| !is_corner || m.normal.dot(replaced.normal) > TURNED;
         // The tread of a step has the floor's normal, and is another plane.
         let is_plane = |m: &LocalManifold| {
             m.normal.dot(own.normal) > SAME_NORMAL && at_meeting(m) <= at_meeting(own) + SAME * prediction
@@ -222,22 +247,22 @@ impl<'a> Pass<'a> {
         certain().any(|m| has_normal(m) && at_meeting(m) <= prediction) && !certain().any(is_plane)
     }
 
-    /// Adds the manifold of one part, if it has one. `screened` are lower bounds of its distance, now and during the motion.
-    /// Returns a lower bound of the distance if the part has no manifold, else infinity.
+    /// Adds the manifold of one part, if it has one. `screened` are lower bounds of its distance, now and
+    /// during the motion. Returns a lower bound of the distance if the part has no manifold, else infinity.
     fn add_part(&self, part: u32, screened: Option<[f32; 2]>, buffers: &mut PartBuffers) -> f32 {
-        let Look { prediction, motion, .. } = self.look;
+        let ManifoldQuery { prediction, motion, .. } = self.query;
         let [now, ever] = screened.unwrap_or([-1.0; 2]);
         let (is_moving, mut local) = (motion != Vector::ZERO, LocalManifold::default());
         let mut gap = f32::INFINITY;
-        let mut doubt = None;
+        let mut replaced = None;
         if self.alone {
             self.collide_alone(part, prediction + motion.length(), &mut local);
         } else if now > prediction {
             local.gap = now;
         } else {
-            doubt = self.collide_part(part, prediction, &mut local);
+            replaced = self.collide_part(part, prediction, &mut local);
             if self.may_pass_by(&local) {
-                buffers.passing.push((part, local, doubt));
+                buffers.passing.push((part, local, replaced));
                 return local.lower_bound();
             }
             self.look_ahead(part, &mut local);
@@ -246,40 +271,46 @@ impl<'a> Pass<'a> {
             gap = local.gap;
             let may_meet = !self.alone && is_moving && !(ever > self.met_ahead());
             if may_meet {
-                doubt = self.cast(part, self.met_ahead(), &mut local);
+                replaced = self.cast(part, self.met_ahead(), &mut local);
             }
             if local.count == 0 {
                 return gap;
             }
         }
-        self.push(part, local, doubt, buffers);
+        self.push(part, local, replaced, buffers);
         gap
     }
 
     /// Adds a contact of a part.
-    fn push(&self, part: u32, mut local: LocalManifold, doubt: Option<Doubt>, buffers: &mut PartBuffers) {
+    fn push(
+        &self,
+        part: u32,
+        mut local: LocalManifold,
+        replaced: Option<ReplacedContact>,
+        buffers: &mut PartBuffers,
+    ) {
         let count = local.count;
-        local.groups = [self.look.group(0, part), self.other_group];
+        local.groups = [self.query.group(0, part), self.other_group];
         local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
         buffers.found.push(local);
-        buffers.doubts.push(doubt);
+        buffers.replaced_contacts.push(replaced);
     }
 
     /// Follows the motion to the parts that it may lead past, unless something that touches now stops it.
     fn pass_by(&self, start: usize, buffers: &mut PartBuffers) {
-        let Look { prediction, motion, met, .. } = self.look;
+        let ManifoldQuery { prediction, motion, met, .. } = self.query;
         let stops = |m: &LocalManifold| m.lower_bound() <= met && -m.normal.dot(motion) > prediction;
         let is_stopped = buffers.found[start..].iter().any(stops);
         let mut passing = core::mem::take(&mut buffers.passing);
-        for (part, mut local, mut doubt) in passing.drain(..) {
+        for (part, mut local, mut replaced) in passing.drain(..) {
             let gap = local.lower_bound();
             if is_stopped {
                 self.look_ahead(part, &mut local);
             } else {
-                doubt = self.cast(part, met, &mut local);
+                replaced = self.cast(part, met, &mut local);
             }
             if local.count > 0 {
-                self.push(part, local, doubt, buffers);
+                self.push(part, local, replaced, buffers);
             } else {
                 buffers.passed = min(buffers.passed, gap);
             }
@@ -287,15 +318,15 @@ impl<'a> Pass<'a> {
         buffers.passing = passing;
     }
 
-    /// Fills `local` with the contact of one part. Returns what it replaced, if it is doubtful.
-    fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) -> Option<Doubt> {
+    /// Fills `local` with the contact of one part. Returns what it replaced, if it is uncertain.
+    fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) -> Option<ReplacedContact> {
         self.collide_alone(part, prediction, local);
-        if let Some(skin) = self.skin.filter(|_| local.count > 0) {
+        if let Some(closed_surface) = self.closed_surface.filter(|_| local.count > 0) {
             let (normal, nearest) = (local.normal, local.lower_bound());
-            self.keep_outside(&skin, part, prediction, local);
+            self.keep_outside(&closed_surface, part, prediction, local);
             let is_turned = local.normal.dot(normal) < TURNED;
             if local.count > 0 && (is_turned || local.lower_bound() < nearest - SAME * prediction) {
-                return Some(Doubt { normal, nearest, share: 0.0, is_needless: false });
+                return Some(ReplacedContact { normal, nearest, share: 0.0, is_redundant: false });
             }
         }
         let surface = self.composite.surface().filter(|_| local.count > 0);
@@ -305,17 +336,18 @@ impl<'a> Pass<'a> {
     /// Whether the motion may lead past a part that has points: it crosses their plane.
     fn may_pass_by(&self, local: &LocalManifold) -> bool {
         let gap = local.lower_bound();
-        local.count > 0 && gap > self.look.met && -local.normal.dot(self.look.motion) * AHEAD > gap
+        local.count > 0 && gap > self.query.met && -local.normal.dot(self.query.motion) * AHEAD > gap
     }
 
     /// The distance at which parts that are farther away than the prediction have met.
     fn met_ahead(&self) -> f32 {
-        min(self.look.met, MET * self.look.prediction)
+        min(self.query.met, MET * self.query.prediction)
     }
 
-    /// Adds the points that the motion brings to the part of a contact. What is struck at one of them turns to the others.
+    /// Adds the points that the motion brings to the part of a contact. What is struck at one of them turns
+    /// to the others.
     fn look_ahead(&self, part: u32, local: &mut LocalManifold) {
-        let Look { prediction, motion, .. } = self.look;
+        let ManifoldQuery { prediction, motion, .. } = self.query;
         let closing = -local.normal.dot(motion);
         if local.count == 0 || local.count == MAX_POINTS || !(closing > prediction) {
             return;
@@ -352,18 +384,18 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// Follows the motion to where a part and the other shape are `met` apart. `local` receives the contact there, with the
-    /// separations of now, if they meet. Returns what it replaced, if it is doubtful.
-    fn cast(&self, part: u32, met: f32, local: &mut LocalManifold) -> Option<Doubt> {
-        let way = self.look.motion;
+    /// Follows the motion to where a part and the other shape are `met` apart. `local` receives the contact
+    /// there, with the separations of now, if they meet. Returns what it replaced, if it is uncertain.
+    fn cast(&self, part: u32, met: f32, local: &mut LocalManifold) -> Option<ReplacedContact> {
+        let way = self.query.motion;
         let mut beside = None;
         let meeting = advance(0.0, ROUNDS, |mut share, round| {
             if !(share <= 1.0) {
                 return None;
             }
             let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
-            let there = Pass { pose: &pose, ..*self };
-            there.collide_alone(part, (1.0 - share) * way.length() + self.look.prediction, local);
+            let there = PartQuery { pose: &pose, ..*self };
+            there.collide_alone(part, (1.0 - share) * way.length() + self.query.prediction, local);
             let closing = -local.normal.dot(way);
             // A plane between convex shapes that does not close is never crossed.
             if local.count == 0 || !(closing > 0.0) {
@@ -375,14 +407,18 @@ impl<'a> Pass<'a> {
                 // At an edge the normal turns until they touch.
                 share = min(share + max(gap, 0.0) / closing, 1.0);
                 let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
-                let doubt = Pass { pose: &pose, ..*self }.collide_part(part, self.look.prediction, local);
+                let replaced =
+                    PartQuery { pose: &pose, ..*self }.collide_part(part, self.query.prediction, local);
                 if local.count > 0
                     && beside.is_none_or(|beside: Vector| beside.dot(local.normal) > SAME_NORMAL)
                 {
                     self.bring_back(share, local);
-                    return Some(Approach::Met(doubt.map(|doubt| Doubt { share, ..doubt })));
+                    return Some(Approach::Met(
+                        replaced.map(|replaced| ReplacedContact { share, ..replaced }),
+                    ));
                 }
-                // What meets a facet beside a border may cross it before it touches: the neighbour was met on this side.
+                // What meets a facet beside a border may cross it before it touches: the neighbour was met
+                // on this side.
                 if local.count > 0 || gap < -met {
                     return None;
                 }
@@ -398,10 +434,10 @@ impl<'a> Pass<'a> {
 
     /// Gives a contact that is met after a share of the motion the separations of now.
     fn bring_back(&self, share: f32, local: &mut LocalManifold) {
-        let way = self.look.motion * share;
+        let way = self.query.motion * share;
         let along = local.normal.dot(way);
         let half = local.normal * (0.5 * along);
-        let on_composite = match self.look.ground {
+        let on_composite = match self.query.ground {
             [true, false] => false,
             [false, true] => true,
             _ => self.on_composite,
@@ -415,13 +451,13 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// A facet's face on the side where the other shape is. The normal of a contact with a border tells little of it: under the
-    /// leaning side of a cone that stands on the face it points into the face.
+    /// A facet's face on the side where the other shape is. The normal of a contact with a border tells
+    /// little of it: under the leaning side of a cone that stands on the face it points into the face.
     fn toward_other(&self, corner: Vector, face: Vector, normal: Vector) -> Vector {
         let height = |direction: Vector| {
             let local = self.pose.rotation.inverse_rotate(-direction);
-            let lowest = match self.skin {
-                Some(skin) => skin.farthest(local),
+            let lowest = match self.closed_surface {
+                Some(closed_surface) => closed_surface.farthest(local),
                 None => self.other.shape.support(local)?,
             };
             Some((self.pose.transform(lowest) - corner).dot(direction))
@@ -433,10 +469,17 @@ impl<'a> Pass<'a> {
         if over < under { -face } else { face }
     }
 
-    /// Replaces the contact of a facet of a closed surface that pushes it out of what the surface bounds, or through the composite, by
-    /// that of the face on the side where the surface is. Drops it if the facet is the surface's back.
-    fn keep_outside(&self, skin: &Skin, part: u32, prediction: f32, local: &mut LocalManifold) {
-        let facing = local.normal.dot(skin.outward);
+    /// Replaces the contact of a facet of a closed surface that pushes it out of what the surface bounds, or
+    /// through the composite, by that of the face on the side where the surface is. Drops it if the facet is
+    /// the surface's back.
+    fn keep_outside(
+        &self,
+        closed_surface: &ClosedSurface,
+        part: u32,
+        prediction: f32,
+        local: &mut LocalManifold,
+    ) {
+        let facing = local.normal.dot(closed_surface.outward);
         if facing < -FACING {
             return;
         }
@@ -448,22 +491,22 @@ impl<'a> Pass<'a> {
         match own {
             None if !is_behind => {}
             Some((_, own)) if !is_behind && !(local.normal.dot(own) < -SIDEWAYS) => {}
-            Some((corners, own)) if !(own.dot(skin.outward) > SIDEWAYS) => {
+            Some((corners, own)) if !(own.dot(closed_surface.outward) > SIDEWAYS) => {
                 self.collide_face(corners, own, prediction, local);
             }
             _ => (local.count, local.gap) = (0, max(local.lower_bound(), 0.0)),
         }
     }
 
-    /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface goes on. Returns
-    /// what it replaced if the face is deeper or turned by more than 8°.
+    /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface
+    /// goes on. Returns what it replaced if the face is deeper or turned by more than 8°.
     fn keep_on_surface(
         &self,
         surface: &Surface,
         facet: u32,
         prediction: f32,
         local: &mut LocalManifold,
-    ) -> Option<Doubt> {
+    ) -> Option<ReplacedContact> {
         let corners = surface.corners(facet);
         let face = face_normal(corners)?;
         let across = local.normal - face * local.normal.dot(face);
@@ -492,8 +535,8 @@ impl<'a> Pass<'a> {
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
         self.collide_face(corners, own, prediction, local);
-        let is_doubtful = own.dot(found) < TURNED || local.lower_bound() < nearest - SAME * prediction;
-        is_doubtful.then_some(Doubt { normal: found, nearest, share: 0.0, is_needless: false })
+        let is_uncertain = own.dot(found) < TURNED || local.lower_bound() < nearest - SAME * prediction;
+        is_uncertain.then_some(ReplacedContact { normal: found, nearest, share: 0.0, is_redundant: false })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Facets that a shape is not near to, ruled out four at a time by slabs along a few directions.
 //!
-//! The directions are the axes of the composite, those of the other shape's own box, and the normal of each facet. What is left
-//! is collided; see [`composite`](super::composite).
+//! The directions are the axes of the composite, those of the other shape's own box, and the normal of each
+//! facet. What is left is collided; see [`composite`](super::composite).
 
 use super::dim::facing;
 use crate::math::{DIM, F32x4, Lane, Num, Pose, Rot, Vector};
@@ -13,7 +13,8 @@ pub(super) const LANES: usize = 4;
 /// What a shape and its motion are compared with.
 pub(super) struct Screen {
     slabs: [Slab; 2 * DIM],
-    /// The origin of the shape's frame. Facets are taken relative to it, so that rounding is small where they are near.
+    /// The origin of the shape's frame. Facets are taken relative to it, so that rounding is small where
+    /// they are near.
     origin: Vector<F32x4>,
     /// The box of the shape's core: its centre from the origin, and its half axes.
     center: Vector<F32x4>,

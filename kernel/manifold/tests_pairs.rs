@@ -1,7 +1,8 @@
-//! Every pair of native shapes at many random poses: against slow oracles, swapped, and with shapes given in other frames.
+//! Every pair of native shapes at many random poses: against slow oracles, swapped, and with shapes given in
+//! other frames.
 //!
-//! A run takes [`POSES`] poses of each pair. `AVIAN_POSES` and `AVIAN_SEED` in the environment replace their number and the
-//! seed: a million poses of each pair are for changes of this folder.
+//! A run takes [`POSES`] poses of each pair. `AVIAN_POSES` and `AVIAN_SEED` in the environment replace their
+//! number and the seed: a million poses of each pair are for changes of this folder.
 
 use super::dim::tests_pairs::{
     BESIDE, KINDS, allowed, exact, far, in_frame, inexact, rotation, shape, square_rotation,
@@ -17,8 +18,9 @@ const POSES: u64 = 2_000;
 const POSES_OF_SHAPES: u64 = 8;
 /// One pose of this many is compared with the exact oracle, where there is one.
 const EXACT_EVERY: u64 = 8;
-/// One pose of this many may be off. A million poses found up to 1 in 2,000 of some pairs: points that are less deep than the
-/// normal says where thin plates cross deeply, and in 2D normals of segments a metre apart.
+/// One pose of this many may be off. A million poses found up to 1 in 2,000 of some pairs: points
+/// that are less deep than the normal says where thin plates cross deeply, and in 2D normals of
+/// segments a metre apart.
 const POSES_OF_OUTLIER: u64 = 500;
 /// A usual prediction distance.
 const NEAR: f32 = 0.02;
@@ -120,7 +122,8 @@ fn bounds(a: &Shape, b: &Shape, pose: &Pose, start: Vector, dice: &mut Dice) -> 
     [climb(a, b, pose, start, dice), f64::INFINITY]
 }
 
-/// The largest separation along the directions that a random climb reaches from a direction and from the best of many.
+/// The largest separation along the directions that a random climb reaches from a direction and from the
+/// best of many.
 fn climb(a: &Shape, b: &Shape, pose: &Pose, start: Vector, dice: &mut Dice) -> f64 {
     let value = |n: Vector| along(a, b, pose, n);
     let mut others: Vec<(f64, Vector)> = (0..24).map(|_| dice.direction()).map(|n| (value(n), n)).collect();

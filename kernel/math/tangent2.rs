@@ -112,7 +112,7 @@ impl<N: Lane> TangentMass<N> {
     /// impulse that stops the slip if it is within `limit`, otherwise an impulse of that length against the
     /// slip.
     #[inline(always)]
-    pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
+    pub fn solve_coulomb(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
         (impulse - self.apply(v)).clamp_length(limit)
     }
     /// The change of slip per impulse, 1/kg; 0 if nothing moves.

@@ -149,7 +149,7 @@ impl<N: Lane> TangentMass<N> {
     /// gains energy. Everything is computed from w = A λ, which is against u, where A is adj(M) divided by
     /// the trace of M, so w is about as large as λ.
     #[inline(always)]
-    pub fn rub(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
+    pub fn solve_coulomb(self, impulse: Tangent<N>, v: Tangent<N>, limit: N) -> Tangent<N> {
         let stick = impulse - self.apply(v);
         let slides = (limit * limit).lt(stick.x * stick.x + stick.y * stick.y);
         let tiny = N::splat(f32::MIN_POSITIVE);
@@ -216,7 +216,7 @@ mod tests {
             let lane = |x: f64| x as f32;
             let mass = TangentMass { xx: lane(xx * scale), yy: lane(yy * scale), xy: lane(xy * scale) };
             let u = Tangent { x: lane(slip[0]), y: lane(slip[1]) };
-            let found = mass.rub(Tangent::ZERO, u, lane(limit * scale));
+            let found = mass.solve_coulomb(Tangent::ZERO, u, lane(limit * scale));
             let found = [found.x, found.y].map(|lane| f64::from(lane) / scale);
             let stop = [-(xx * slip[0] + xy * slip[1]), -(xy * slip[0] + yy * slip[1])];
             if length(stop) <= limit {

@@ -13,7 +13,7 @@ mod hits;
 mod near;
 mod point;
 mod ray;
-mod sweep;
+mod shape_cast;
 #[cfg(test)]
 pub(crate) mod tests;
 
@@ -23,4 +23,4 @@ pub use hits::{Hit, Nearest, sort_hits};
 pub use near::{visit_near, visit_touching};
 pub use point::{Projection, contains_point, project_point};
 pub use ray::{Ray, RayCastHit};
-pub use sweep::{ShapeCast, ShapeCastHit};
+pub use shape_cast::{ShapeCast, ShapeCastHit};

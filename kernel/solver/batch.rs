@@ -1,10 +1,10 @@
 //! The interface of constraints: a batch of rows of one kind is filled, swept and stored block by block.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
-use super::bearing::Bearing;
+use super::deep_overlap::DeepCounts;
 use super::input::{Item, RowInput};
+use super::mass_scaling::MassScaling;
 use super::release::Released;
-use super::split::DeepCounts;
 use super::struck::{Striking, Struck};
 use super::{BodyRow, GainRow, MassRow, RowView, SubstepParams};
 use crate::contact::ManifoldsView;
@@ -14,7 +14,7 @@ use core::ops::Range;
 
 /// The operation of a sweep over rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Pass {
+pub(super) enum SolverPass {
     /// Apply the impulses of the last substep.
     WarmStart,
     /// Solve with soft bias.
@@ -30,21 +30,22 @@ pub(super) enum Pass {
 /// A set of passes, as bits, and two flags: the rows may have an overloaded body, and a point of the rows
 /// may be struck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Passes(u8);
+pub(super) struct SolverPasses(u8);
 
-impl Passes {
+impl SolverPasses {
     /// The passes of every constraint: warm start, solve, relax.
-    pub(super) const BASIC: Self = Self::of(Pass::WarmStart).with(Pass::Solve).with(Pass::Relax);
+    pub(super) const BASIC: Self =
+        Self::of(SolverPass::WarmStart).with(SolverPass::Solve).with(SolverPass::Relax);
 
     const OVERLOADED: u8 = 1 << 7;
     const WATCHED: u8 = 1 << 6;
 
-    const fn of(pass: Pass) -> Self {
+    const fn of(pass: SolverPass) -> Self {
         Self(1 << pass as u8)
     }
 
     /// This set plus one more pass.
-    pub(super) const fn with(self, pass: Pass) -> Self {
+    pub(super) const fn with(self, pass: SolverPass) -> Self {
         Self(self.0 | Self::of(pass).0)
     }
 
@@ -72,7 +73,7 @@ impl Passes {
 
     /// Whether a pass is in the set.
     #[inline(always)]
-    pub(super) fn has(self, pass: Pass) -> bool {
+    pub(super) fn has(self, pass: SolverPass) -> bool {
         self.0 & Self::of(pass).0 != 0
     }
 }
@@ -86,7 +87,7 @@ pub(super) struct Filling<'a> {
     pub(super) first_dynamic: u32,
     pub(super) params: &'a SubstepParams,
     pub(super) deep: &'a DeepCounts,
-    pub(super) bearing: &'a Bearing,
+    pub(super) mass_scaling: &'a MassScaling,
     pub(super) released: &'a Released,
     /// As in [`BodyRows`](super::BodyRows).
     pub(super) axes: &'a [Vector],
@@ -102,7 +103,7 @@ pub(super) struct Seek<'a> {
 
 /// One pass over all rows.
 pub(super) struct Sweep<'a> {
-    pub(super) pass: Pass,
+    pub(super) pass: SolverPass,
     pub(super) bodies: RowView<'a, BodyRow>,
     pub(super) gains: RowView<'a, GainRow>,
     pub(super) params: &'a SubstepParams,
@@ -115,14 +116,14 @@ pub(super) trait Batch: Sync {
     ///
     /// # Safety
     /// Until the call returns, no other thread uses these rows, or writes their bodies or contacts.
-    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes;
+    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> SolverPasses;
 
     /// Runs a pass over rows that need `passes`.
     ///
     /// # Safety
     /// Until the call returns, no other thread uses these rows, reads or writes their dynamic bodies, or
     /// writes their other bodies.
-    unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep);
+    unsafe fn run(&self, rows: Range<usize>, passes: SolverPasses, sweep: &Sweep);
 
     /// Watches the lanes with a struck body, and adds the lanes with a struck point to `_found`. Returns
     /// whether any lane is watched. The default is for kinds without impacts: it adds nothing.
@@ -132,7 +133,7 @@ pub(super) trait Batch: Sync {
     unsafe fn find_struck(
         &self,
         _rows: Range<usize>,
-        _block: (&[Item], Passes),
+        _block: (&[Item], SolverPasses),
         _seek: &Seek,
         _found: &mut Vec<Struck>,
     ) -> bool {

@@ -6,13 +6,13 @@
 //! impact sets in motion may strike others in the next round, as in Newton's cradle (Smith, Kaufman, Vouga,
 //! Tamstorf, Grinspun, "Reflections on Simultaneous Impact", 2012).
 //!
-//! A round solves each [group](super::group) of manifolds connected by bodies on its own.
+//! A round solves each [group](super::impact_group) of manifolds connected by bodies on its own.
 //!
 //! Bodies move with their old velocity until they touch: each is displaced by its velocity change,
 //! reversed, times the time until touching.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::group::{GroupBuffers, solve};
+use super::impact_group::{GroupBuffers, solve};
 use super::input::Item;
 use super::struck::{Striking, Struck, is_due, movable};
 use crate::contact::ContactTable;

@@ -387,7 +387,7 @@ impl<N: Lane> CompressionRow<N> {
             let [a, b] = self.moments[i];
             self.contact.push(&mut pair, n * delta, [a * delta, b * delta]);
         }
-        self.change = change.max(self.contact.rub(&mut pair));
+        self.change = change.max(self.contact.solve_coulomb(&mut pair));
         // SAFETY: by the contract.
         unsafe { pair.or_where_not(open, before).store(body_rows, &self.contact.ids) };
     }

@@ -1,11 +1,11 @@
 //! Contact rows as batches: one batch per lane width, number of points and kind of inverse mass.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
-use super::batch::{Batch, Filling, Pass, Passes, Seek, Sweep};
+use super::batch::{Batch, Filling, Seek, SolverPass, SolverPasses, Sweep};
 use super::blow::Blows;
+use super::color_layer::{ColorLayer, Sorter};
 use super::contact_fill::{BlockRows, PREFETCH_DISTANCE, fill_rows};
 use super::input::Item;
-use super::layer::{Layer, Sorter};
 use super::struck::{Striking, Struck};
 use super::{BodyRow, ContactRow, GainRow, ImpactRow, InvMass, RowView, SplitImpulseRow, SubstepParams};
 use crate::contact::{Manifold, ManifoldsView};
@@ -80,7 +80,7 @@ fn batch_of(is_held: bool, points: u32) -> usize {
 
 /// Sorts the manifolds with number `index` of some contacts into a layer. Returns the number of contacts
 /// with further manifolds.
-pub(super) fn sort_contacts(contacts: &[u32], index: u32, sorter: &Sorter, layer: &mut Layer) -> usize {
+pub(super) fn sort_contacts(contacts: &[u32], index: u32, sorter: &Sorter, layer: &mut ColorLayer) -> usize {
     let table = sorter.input.contacts;
     let (parts, mut more) = (layer.parts(), 0);
     for &id in contacts {
@@ -208,7 +208,7 @@ impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
     ///
     /// # Safety
     /// As [`Batch::run`].
-    unsafe fn enter<S: ContactPass>(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) {
+    unsafe fn enter<S: ContactPass>(&self, rows: Range<usize>, passes: SolverPasses, sweep: &Sweep) {
         let Sweep { bodies, gains, params, .. } = *sweep;
         // SAFETY: by the contract.
         unsafe {
@@ -219,21 +219,21 @@ impl<'a, N: Entry, M: InvMass<N>, const P: usize> RowsView<'a, N, M, P> {
 }
 
 impl<N: Entry, M: InvMass<N>, const P: usize> Batch for RowsView<'_, N, M, P> {
-    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes {
+    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> SolverPasses {
         // SAFETY: by the contract.
         unsafe { N::enter(self.proof, FillJob { block: self.take(rows), items, from: *from }) }
     }
 
-    unsafe fn run(&self, rows: Range<usize>, passes: Passes, sweep: &Sweep) {
+    unsafe fn run(&self, rows: Range<usize>, passes: SolverPasses, sweep: &Sweep) {
         // SAFETY: by the contract.
         unsafe {
             match sweep.pass {
-                Pass::WarmStart => self.enter::<WarmStart>(rows, passes, sweep),
-                Pass::Solve => self.enter::<Solve>(rows, passes, sweep),
-                Pass::UndoSplit => self.enter::<UndoSplit>(rows, passes, sweep),
-                Pass::Relax if passes.are_watched() => self.enter::<RelaxWatched>(rows, passes, sweep),
-                Pass::Relax => self.enter::<Relax>(rows, passes, sweep),
-                Pass::Measure => self.enter::<Measure>(rows, passes, sweep),
+                SolverPass::WarmStart => self.enter::<WarmStart>(rows, passes, sweep),
+                SolverPass::Solve => self.enter::<Solve>(rows, passes, sweep),
+                SolverPass::UndoSplit => self.enter::<UndoSplit>(rows, passes, sweep),
+                SolverPass::Relax if passes.are_watched() => self.enter::<RelaxWatched>(rows, passes, sweep),
+                SolverPass::Relax => self.enter::<Relax>(rows, passes, sweep),
+                SolverPass::Measure => self.enter::<Measure>(rows, passes, sweep),
             }
         }
     }
@@ -241,7 +241,7 @@ impl<N: Entry, M: InvMass<N>, const P: usize> Batch for RowsView<'_, N, M, P> {
     unsafe fn find_struck(
         &self,
         rows: Range<usize>,
-        (items, passes): (&[Item], Passes),
+        (items, passes): (&[Item], SolverPasses),
         seek: &Seek,
         found: &mut Vec<Struck>,
     ) -> bool {
@@ -265,10 +265,10 @@ struct FillJob<'a, N: Lane, M, const P: usize> {
 }
 
 impl<N: Lane, M: InvMass<N>, const P: usize> Job for FillJob<'_, N, M, P> {
-    type Output = Passes;
+    type Output = SolverPasses;
 
     #[inline(always)]
-    unsafe fn run(self) -> Passes {
+    unsafe fn run(self) -> SolverPasses {
         fill_rows(self.block, self.items, &self.from)
     }
 }
@@ -279,7 +279,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> Job for FillJob<'_, N, M, P> {
 /// them in registers (8 % less time for sweeps in 2D (m)).
 struct Swept<'a, N: Lane, M, const P: usize> {
     block: BlockRows<'a, N, M, P>,
-    passes: Passes,
+    passes: SolverPasses,
     bodies: RowView<'a, BodyRow>,
     gains: RowView<'a, GainRow>,
     params: SubstepParams,
@@ -302,8 +302,8 @@ impl<S: ContactPass, N: Lane, M: InvMass<N>, const P: usize> Job for RunJob<'_, 
 
 /// Whether the rows of a block with these passes have split impulses.
 #[inline(always)]
-fn has_split(passes: Passes) -> bool {
-    passes.has(Pass::UndoSplit)
+fn has_split(passes: SolverPasses) -> bool {
+    passes.has(SolverPass::UndoSplit)
 }
 
 /// A pass over the rows of a block.
@@ -408,7 +408,7 @@ impl ContactPass for RelaxWatched {
 struct FindJob<'a, N: Lane, M, const P: usize> {
     block: BlockRows<'a, N, M, P>,
     items: &'a [Item],
-    passes: Passes,
+    passes: SolverPasses,
     seek: Seek<'a>,
     found: &'a mut Vec<Struck>,
 }

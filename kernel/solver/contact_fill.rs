@@ -2,12 +2,12 @@
 //! once.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::batch::{Filling, Pass, Passes};
-use super::bearing::sag_rate;
+use super::batch::{Filling, SolverPass, SolverPasses};
+use super::deep_overlap::DeepCounts;
 use super::input::Item;
+use super::mass_scaling::sag_rate;
 use super::pair::lanes_of_body;
 use super::resistance::levers;
-use super::split::DeepCounts;
 use super::{BodyRow, ContactRow, ImpactRow, InvMass, MassRow, SplitImpulseRow};
 use crate::contact::{Contact, ContactFlags, Manifold};
 use crate::math::{Ids, Lane, TangentFrame, Vector};
@@ -34,7 +34,7 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
     block: BlockRows<N, M, P>,
     items: &[Item],
     from: &Filling,
-) -> Passes {
+) -> SolverPasses {
     let (mut watched, mut any_deep, mut overloaded) = (false, false, false);
     let sag_rate = N::splat(sag_rate(from.params));
     let pressed = N::splat(PRESSED * from.params.max_sag);
@@ -63,12 +63,12 @@ pub(super) fn fill_rows<N: Lane, M: InvMass<N>, const P: usize>(
             impact.watched = N::select(N::ZERO.lt(split.deep), N::splat(-1.0), impact.watched);
         }
     }
-    let mut passes = Passes::BASIC.with(Pass::Measure);
+    let mut passes = SolverPasses::BASIC.with(SolverPass::Measure);
     if watched {
         passes = passes.watched();
     }
     if any_deep {
-        passes = passes.with(Pass::UndoSplit);
+        passes = passes.with(SolverPass::UndoSplit);
     }
     if overloaded {
         passes = passes.overloaded();
@@ -186,7 +186,7 @@ impl<N: Lane, const P: usize> Fill<N, P> {
         impact.restitution.set(lane, restitution);
         let share = from.deep.share(ids, from.first_dynamic);
         debug_assert!(share > 0.0 && share <= 1.0, "a share: {share}");
-        row.push_speed.set(lane, from.params.max_push_speed * share * from.bearing.push_share(ids));
+        row.push_speed.set(lane, from.params.max_push_speed * share * from.mass_scaling.push_share(ids));
         let warm_start = if from.released.concerns(ids) { 0.0 } else { from.params.warm_start };
         self.copy(manifold, contact.frozen.offset, warm_start, from.params.friction_fade, lane, row);
     }

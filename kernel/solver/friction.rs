@@ -58,7 +58,7 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
         let stick = self.tangent_impulse - self.tangent_mass.apply(slip);
         let [slide, spin] =
             self.twist.limits(n, self.friction * load, impulses, (self.tangent_mass, stick), &pair.w);
-        let new = self.tangent_mass.rub(self.tangent_impulse, slip, slide);
+        let new = self.tangent_mass.solve_coulomb(self.tangent_impulse, slip, slide);
         let impulse = frame.expand(new - self.tangent_impulse);
         self.tangent_impulse = new;
         self.push(pair, impulse, [ra.cross(impulse), rb.cross(impulse)]);

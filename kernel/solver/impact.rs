@@ -1,7 +1,7 @@
 //! Detection of contact rows that close fast, and extraction of their lanes for blows.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::bearing::Bearing;
+use super::mass_scaling::MassScaling;
 use super::pair::{Pair, lanes_of_body};
 use super::{BodyRow, ContactRow, InvMass, PointRow, RowView, SubstepParams};
 use crate::math::{Angular, Ids, Lane, MAX_POINTS, Tangent, TangentFrame, TangentMass, Vector, max, min};
@@ -179,8 +179,8 @@ impl ContactRow<f32, Vector, MAX_POINTS> {
     }
 
     /// Restores the true masses of bodies that have a raised mass in contacts.
-    pub(super) fn take_true_masses(&mut self, bearing: &Bearing) {
-        let shares = self.ids.map(|[row]| bearing.share(row));
+    pub(super) fn take_true_masses(&mut self, mass_scaling: &MassScaling) {
+        let shares = self.ids.map(|[row]| mass_scaling.share(row));
         if shares == [Vector::ONE; 2] {
             return;
         }

@@ -11,18 +11,20 @@
 //! manifold. Deep overlap is pushed out by split impulses, which do not change velocities
 //! ([`SplitImpulseRow`]).
 //!
-//! Each kind of constraint is a file that implements `Batch` (`batch.rs`) and is listed in `batches.rs`.
+//! Each kind of constraint is a file that implements `Batch` (`batch.rs`) and is listed in `all_rows.rs`.
 //! The plan and its stages know a row only by its batch and number.
 
+mod all_rows;
 mod batch;
-mod batches;
-mod bearing;
 mod blow;
 mod body;
+mod color_layer;
 mod compression;
 mod contact_batch;
 mod contact_fill;
+mod continuous;
 mod custom;
+mod deep_overlap;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
 mod dim;
@@ -31,32 +33,30 @@ mod fast_turn;
 mod fill;
 mod finish;
 mod friction;
-mod gain;
-mod group;
 #[cfg_attr(feature = "2d", path = "gyro2.rs")]
 #[cfg_attr(feature = "3d", path = "gyro3.rs")]
 mod gyro;
 mod impact;
+mod impact_group;
 mod input;
 mod integrate;
 mod inv_mass;
 mod joint;
-mod layer;
+mod mass_scaling;
 mod pair;
+mod partition;
 mod plan;
 mod release;
 mod resistance;
 mod row;
-mod shares;
 mod softness;
 #[cfg_attr(feature = "2d", path = "spin2.rs")]
 #[cfg_attr(feature = "3d", path = "spin3.rs")]
 mod spin;
-mod split;
 mod stages;
 mod struck;
-mod sweep;
 mod view;
+mod warm_start;
 
 pub use blow::ManifoldBlow;
 pub use body::{BodyRows, Limits, Motion, Thrust};

@@ -1,9 +1,9 @@
 //! The solve order: stages, cut into blocks that workers share.
 
-use super::batch::Passes;
+use super::batch::SolverPasses;
+use super::color_layer::ColorLayer;
 use super::input::Item;
-use super::layer::Layer;
-use super::shares::Shares;
+use super::partition::Partition;
 
 /// Consecutive rows of one batch. Blocks of a stage have no dynamic body in common, so they may be solved
 /// in any order or in parallel.
@@ -11,7 +11,7 @@ use super::shares::Shares;
 pub(super) struct Block {
     pub(super) batch: u16,
     /// The passes that the rows need.
-    pub(super) passes: Passes,
+    pub(super) passes: SolverPasses,
     start: u32,
     len: u32,
     /// Index of the list of the plan that holds the block's items.
@@ -69,7 +69,7 @@ pub(super) struct Stage<'a> {
 pub(super) struct Planned<'a> {
     pub(super) color: u8,
     pub(super) number: u32,
-    pub(super) layer: &'a Layer,
+    pub(super) layer: &'a ColorLayer,
     /// The batch of the layer's first list.
     pub(super) first_batch: usize,
     /// Number of lanes of a row.
@@ -93,11 +93,11 @@ impl Plan {
     }
 
     /// Plans one stage from a layer.
-    pub(super) fn add(&mut self, planned: &Planned, shares: &Shares) {
+    pub(super) fn add(&mut self, planned: &Planned, partition: &Partition) {
         let parts = planned.layer.parts();
-        debug_assert!((1..=shares.workers()).contains(&parts), "{parts} parts");
-        for worker in 0..shares.workers() {
-            if let Some(part) = shares.of_worker(worker, parts) {
+        debug_assert!((1..=partition.workers()).contains(&parts), "{parts} parts");
+        for worker in 0..partition.workers() {
+            if let Some(part) = partition.of_worker(worker, parts) {
                 for batch in 0..planned.layer.batches() {
                     self.add_list(planned, part, batch);
                 }
@@ -151,7 +151,7 @@ impl Plan {
     /// Adds a block of items of a list.
     fn add_block(&mut self, batch: usize, list: u32, first_item: u32, items: u32, width: u32) {
         let (start, len) = (self.rows[batch], items.div_ceil(width));
-        let (batch, passes) = (batch as u16, Passes::BASIC);
+        let (batch, passes) = (batch as u16, SolverPasses::BASIC);
         self.blocks.push(Block { batch, passes, start, len, list, first_item, items });
         self.rows[usize::from(batch)] += len;
         self.items[usize::from(batch)] += items;
@@ -189,7 +189,7 @@ impl Plan {
 
     /// The items of a block.
     #[inline(always)]
-    pub(super) fn items<'a>(&self, block: &Block, layers: &'a [Vec<Layer>]) -> &'a [Item] {
+    pub(super) fn items<'a>(&self, block: &Block, layers: &'a [Vec<ColorLayer>]) -> &'a [Item] {
         let ListPlace { color, layer, part, batch } = self.lists[block.list as usize];
         let list = layers[usize::from(color)][layer as usize].list(part as usize, batch as usize);
         &list[block.first_item as usize..(block.first_item + block.items) as usize]

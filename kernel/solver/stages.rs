@@ -1,21 +1,21 @@
 //! The stages of a step, in the order they run.
 #![expect(unsafe_code, reason = "blocks of a stage are changed at once, each by one worker")]
 
-use super::batch::{Filling, Pass, Seek, Sweep};
-use super::batches::{AllRows, Layers, SortedTables};
-use super::bearing::Bearing;
+use super::all_rows::{AllRows, ColorLayers, SortedTables};
+use super::batch::{Filling, Seek, SolverPass, Sweep};
 use super::blow::{Blows, ManifoldBlow};
 use super::body::Gains;
+use super::color_layer::Sorter;
 use super::contact_batch::Room;
 use super::custom::CustomTable;
+use super::deep_overlap::DeepCounts;
 use super::exclusive;
 use super::input::RowInput;
 use super::joint::{InertiaFloors, JointTable, JointTrees, TreeBlows};
-use super::layer::Sorter;
+use super::mass_scaling::MassScaling;
+use super::partition::Partition;
 use super::plan::{Block, Plan, Stage};
 use super::release::Released;
-use super::shares::Shares;
-use super::split::DeepCounts;
 use super::struck::Striking;
 use super::{BodyRow, BodyRows, GainRow, RowView, SubstepParams};
 use crate::contact::{ContactFlags, ContactTable};
@@ -53,12 +53,12 @@ pub struct Solver {
     tree_blows: TreeBlows,
     inertia_floors: InertiaFloors,
     rows: AllRows,
-    layers: Layers,
+    layers: ColorLayers,
     seen: exclusive::Seen,
     plan: Plan,
-    shares: Shares,
+    partition: Partition,
     deep: DeepCounts,
-    bearing: Bearing,
+    mass_scaling: MassScaling,
     released: Released,
     blows: Blows,
     /// Contacts that the next step must not recycle, because their bodies were moved back.
@@ -82,7 +82,7 @@ impl Solver {
     /// Sets the minimum number of constraints per worker for which workers share a colour, from the next
     /// [`build_rows`](Self::build_rows) on. Tests lower it to share small colours.
     pub fn share_from(&mut self, constraints: usize) {
-        self.shares.worth = constraints;
+        self.partition.worth = constraints;
     }
 
     /// Clears the rows of the last step, and resizes [`bodies`](Self::bodies). The caller must fill every
@@ -102,7 +102,7 @@ impl Solver {
     /// No two constraints of a colour other than the overflow share a body whose row is dynamic, and no
     /// constraint is in the graph twice: otherwise two threads would write one body. This holds if
     /// contacts, colours and body kinds have been changed, since they were empty, only through one
-    /// [`Link`](crate::contact::Link) to all three. Debug builds check it.
+    /// [`ContactManager`](crate::contact::ContactManager) to all three. Debug builds check it.
     ///
     /// # Panics
     /// If the graph has a contact or body that the input lacks, or the input has a row that is not among
@@ -114,7 +114,7 @@ impl Solver {
         params: &SubstepParams,
         pool: &ThreadPool,
     ) {
-        let Self { bodies, joints, trees, inertia_floors, shares, deep, first_dynamic, seen, .. } = self;
+        let Self { bodies, joints, trees, inertia_floors, partition, deep, first_dynamic, seen, .. } = self;
         debug_assert!(params.is_valid(), "{params:?}");
         debug_assert!(bodies.are_finite(), "rows of bodies are filled with finite values");
         if cfg!(debug_assertions) {
@@ -126,27 +126,27 @@ impl Solver {
         trees.find(joints, input, colors, (params.joints, bodies));
         bodies.turn_inertia(0.5 * (params.dt + params.h));
         joints.raise_inertia(input, colors, (params.h, pool), &mut bodies.masses, inertia_floors);
-        shares.divide(pool.workers(), *first_dynamic, input, colors);
+        partition.divide(pool.workers(), *first_dynamic, input, colors);
         self.plan_rows(input, colors, pool);
         let rows = self.plan.rows().iter().sum::<u32>();
         if self.slack.is_due((rows + self.trees.len()) as usize) {
             self.rows.give_back();
             self.trees.give_back();
-            (self.layers, self.plan, self.bearing, self.blows) = Default::default();
+            (self.layers, self.plan, self.mass_scaling, self.blows) = Default::default();
             self.plan_rows(input, colors, pool);
         }
         if rows + self.trees.len() >= WORTH_WAKING {
             pool.wake();
         }
-        self.bearing.clear();
+        self.mass_scaling.clear();
         self.released.find(input, &self.bodies, params);
         self.blows.begin_step();
         self.fill_rows(input, params, pool);
-        let Self { bodies, trees, plan, bearing, .. } = self;
+        let Self { bodies, trees, plan, mass_scaling, .. } = self;
         let any_overloaded = plan.blocks.iter().any(|block| block.passes.are_overloaded());
         let was_any = !input.contacts.raised_masses.is_empty();
         if (any_overloaded || was_any)
-            && bearing.raise_masses(input, bodies, params, |rows| trees.connects(rows))
+            && mass_scaling.raise_masses(input, bodies, params, |rows| trees.connects(rows))
         {
             // Bodies with a mass per axis need rows of another kind.
             self.plan_rows(input, colors, pool);
@@ -161,9 +161,9 @@ impl Solver {
 
     /// Sorts the constraints of all colours into rows, and resizes the rows.
     fn plan_rows(&mut self, input: &RowInput, colors: &ColorGraph, pool: &ThreadPool) {
-        let Self { bodies, joints, customs, trees, rows, layers, plan, shares, deep, .. } = self;
+        let Self { bodies, joints, customs, trees, rows, layers, plan, partition, deep, .. } = self;
         let workers = pool.workers();
-        let sorter = &Sorter { input, axes: &bodies.axes, shares };
+        let sorter = &Sorter { input, axes: &bodies.axes, partition };
         layers.sort(colors, SortedTables { joints: (joints, trees), customs }, sorter, pool);
         plan.begin(if workers > 1 { BLOCK_ROWS } else { u32::MAX }, workers, AllRows::BATCHES);
         layers.plan(rows.width, sorter, plan);
@@ -172,7 +172,8 @@ impl Solver {
 
     /// Fills the rows of all blocks.
     fn fill_rows(&mut self, input: &RowInput, params: &SubstepParams, pool: &ThreadPool) {
-        let Self { bodies, joints, customs, trees, rows, layers, plan, deep, bearing, released, .. } = self;
+        let Self { bodies, joints, customs, trees, rows, layers, plan, deep, mass_scaling, released, .. } =
+            self;
         let BodyRows { rows: body_rows, masses, axes, first_dynamic, .. } = bodies;
         let filling = &Filling {
             input,
@@ -181,7 +182,7 @@ impl Solver {
             first_dynamic: *first_dynamic,
             params,
             deep,
-            bearing,
+            mass_scaling,
             released,
             axes,
         };
@@ -222,11 +223,11 @@ impl Solver {
     pub fn warm_start(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         let was_struck = self.strike(params.h, params, pool);
         if core::mem::take(&mut self.gaps_are_old) || was_struck {
-            self.sweep(Pass::Measure, params, pool);
+            self.sweep(SolverPass::Measure, params, pool);
         }
         self.bodies.enter_rows(pool);
         if !self.bodies.begin_gains(pool) {
-            self.sweep(Pass::WarmStart, params, pool);
+            self.sweep(SolverPass::WarmStart, params, pool);
         }
         self.bodies.leave_rows(pool);
     }
@@ -234,9 +235,9 @@ impl Solver {
     /// Solves constraints with soft bias.
     pub fn solve(&mut self, params: &SubstepParams, pool: &ThreadPool) {
         if core::mem::take(&mut self.gaps_are_old) {
-            self.sweep(Pass::Measure, params, pool);
+            self.sweep(SolverPass::Measure, params, pool);
         }
-        self.sweep(Pass::Solve, params, pool);
+        self.sweep(SolverPass::Solve, params, pool);
         self.bodies.leave_rows(pool);
     }
 
@@ -250,10 +251,10 @@ impl Solver {
     /// Removes split impulses from the velocities, then solves constraints without bias, and applies
     /// friction.
     pub fn relax(&mut self, params: &SubstepParams, pool: &ThreadPool) {
-        if self.plan.blocks.iter().any(|block| block.passes.has(Pass::UndoSplit)) {
-            self.sweep(Pass::UndoSplit, params, pool);
+        if self.plan.blocks.iter().any(|block| block.passes.has(SolverPass::UndoSplit)) {
+            self.sweep(SolverPass::UndoSplit, params, pool);
         }
-        self.sweep(Pass::Relax, params, pool);
+        self.sweep(SolverPass::Relax, params, pool);
         self.bodies.end_gains(pool);
         self.bodies.leave_rows(pool);
     }
@@ -302,7 +303,7 @@ impl Solver {
                     break;
                 }
                 self.with_true_turns(pool, |blows, trees, (bodies, gains)| {
-                    let sweep = Sweep { pass: Pass::Relax, bodies, gains, params };
+                    let sweep = Sweep { pass: SolverPass::Relax, bodies, gains, params };
                     blows.follow(trees, &sweep, time, pool);
                 });
                 self.strike_contacts(time, params, pool);
@@ -336,9 +337,9 @@ impl Solver {
                 self.with_true_turns(pool, |blows, trees, (bodies, _)| blows.begin(trees, &bodies));
             }
             self.bodies.enter_rows(pool);
-            let Self { bodies: BodyRows { rows, motions, width, .. }, blows, bearing, .. } = self;
+            let Self { bodies: BodyRows { rows, motions, width, .. }, blows, mass_scaling, .. } = self;
             let bodies = RowView::over(rows, self.first_dynamic);
-            let striking = Striking { bodies, motions, bearing, params, time, elapsed: blows.elapsed };
+            let striking = Striking { bodies, motions, mass_scaling, params, time, elapsed: blows.elapsed };
             if !blows.strike((self.first_dynamic, *width), &striking, pool) {
                 break;
             }
@@ -350,11 +351,11 @@ impl Solver {
     /// Finds the contacts that close fast. Returns whether there are any.
     fn find_struck(&mut self, time: f32, params: &SubstepParams, pool: &ThreadPool) -> bool {
         self.bodies.enter_rows(pool);
-        let Self { bodies, joints, customs, rows, plan, layers, blows, bearing, .. } = self;
+        let Self { bodies, joints, customs, rows, plan, layers, blows, mass_scaling, .. } = self;
         let BodyRows { rows: body_rows, motions, .. } = bodies;
         let bodies = RowView::over(body_rows, self.first_dynamic);
         let Blows { found, reached_anew, elapsed, .. } = blows;
-        let striking = Striking { bodies, motions, bearing, params, time, elapsed: *elapsed };
+        let striking = Striking { bodies, motions, mass_scaling, params, time, elapsed: *elapsed };
         let seek = &Seek { striking, reached: (!reached_anew.is_empty()).then_some(reached_anew) };
         let mut blocks = core::mem::take(&mut plan.blocks);
         rows.with(joints, customs, |batches| {
@@ -408,7 +409,7 @@ impl Solver {
                 }
             }
         });
-        self.bearing.store(contacts);
+        self.mass_scaling.store(contacts);
         self.blows.store(contacts);
         for id in self.outdated.drain(..) {
             contacts.get_mut(id).flags.set(ContactFlags::FROZEN, false);
@@ -424,17 +425,17 @@ impl Solver {
     /// relax pass ended with trees, joints would close the errors that contacts open against the same
     /// contacts, and such a loop gains energy from a mass ratio of three on. Trees also come first, because
     /// they have no warm start: contacts have to see the load on the joints.
-    fn sweep(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
+    fn sweep(&mut self, pass: SolverPass, params: &SubstepParams, pool: &ThreadPool) {
         debug_assert!(params.is_valid(), "{params:?}");
         match pass {
-            Pass::Measure => {
+            SolverPass::Measure => {
                 self.trees.forget_places();
                 self.sweep_rows(pass, params, pool);
             }
             _ => {
                 self.sweep_trees(pass, params, pool);
                 self.sweep_rows(pass, params, pool);
-                if pass == Pass::Solve && !self.plan.blocks.is_empty() {
+                if pass == SolverPass::Solve && !self.plan.blocks.is_empty() {
                     self.sweep_trees(pass, params, pool);
                 }
             }
@@ -442,7 +443,7 @@ impl Solver {
     }
 
     /// Runs a pass over all trees.
-    fn sweep_trees(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
+    fn sweep_trees(&mut self, pass: SolverPass, params: &SubstepParams, pool: &ThreadPool) {
         let Self { bodies, trees, first_dynamic, .. } = self;
         if trees.len() > 0 {
             // Trees use the true rotation of bodies, so they need true angular velocities.
@@ -453,7 +454,7 @@ impl Solver {
     }
 
     /// Runs a pass over all blocks that need it, stage by stage.
-    fn sweep_rows(&mut self, pass: Pass, params: &SubstepParams, pool: &ThreadPool) {
+    fn sweep_rows(&mut self, pass: SolverPass, params: &SubstepParams, pool: &ThreadPool) {
         self.bodies.enter_rows(pool);
         let Self { bodies, joints, customs, rows, plan, first_dynamic, .. } = self;
         debug_assert!(

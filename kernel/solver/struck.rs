@@ -1,10 +1,10 @@
-//! A struck manifold, and the effect of the impact on its two bodies. Manifolds of a [group](super::group)
-//! are solved together.
+//! A struck manifold, and the effect of the impact on its two bodies. Manifolds of a
+//! [group](super::impact_group) are solved together.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::bearing::Bearing;
 use super::impact::Motions;
 use super::input::Item;
+use super::mass_scaling::MassScaling;
 use super::pair::Pair;
 use super::{BodyRow, ContactRow, Motion, PointRow, RowView, SubstepParams};
 use crate::math::{Angular, Ids, Lane, MAX_POINTS, Tangent, TangentFrame, Vector, max, min};
@@ -54,7 +54,7 @@ const ABSENT: f32 = -1.0;
 pub(super) struct Striking<'a> {
     pub(super) bodies: RowView<'a, BodyRow>,
     pub(super) motions: &'a [Motion],
-    pub(super) bearing: &'a Bearing,
+    pub(super) mass_scaling: &'a MassScaling,
     pub(super) params: &'a SubstepParams,
     /// The time within which points are struck, in seconds.
     pub(super) time: f32,
@@ -74,7 +74,7 @@ impl Struck {
         striking: &Striking,
     ) -> Self {
         let Striking { params, time, elapsed, .. } = *striking;
-        row.take_true_masses(striking.bearing);
+        row.take_true_masses(striking.mass_scaling);
         // SAFETY: by the contract.
         let Motions { mut moments, mut speeds, gaps } = unsafe { row.motions(&striking.bodies) };
         // SAFETY: by the contract.
@@ -253,10 +253,10 @@ impl Struck {
     ///
     /// # Safety
     /// As [`restitute`](Self::restitute).
-    pub(super) unsafe fn rub(&mut self, rows: &RowView<BodyRow>) -> f32 {
+    pub(super) unsafe fn solve_coulomb(&mut self, rows: &RowView<BodyRow>) -> f32 {
         // SAFETY: by the contract.
         let mut pair = unsafe { Pair::load(rows, &self.row.ids) };
-        let change = self.row.rub(&mut pair);
+        let change = self.row.solve_coulomb(&mut pair);
         // SAFETY: by the contract.
         unsafe { pair.store(rows, &self.row.ids) };
         change
@@ -307,7 +307,7 @@ impl ContactRow<f32, Vector, MAX_POINTS> {
 impl<N: Lane, const P: usize> ContactRow<N, Vector<N>, P> {
     /// Solves the friction of an impact. Returns the approximate change of the slip, m/s.
     #[inline(always)]
-    pub(super) fn rub(&mut self, pair: &mut Pair<N>) -> N {
+    pub(super) fn solve_coulomb(&mut self, pair: &mut Pair<N>) -> N {
         let (before, pressure) = (self.tangent_impulse, self.pressure());
         self.solve_friction(pair, Vector::ZERO, pressure);
         (self.tangent_impulse - before).length() * self.tangent_mass.mean_inverse()

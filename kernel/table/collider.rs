@@ -277,7 +277,7 @@ impl ColliderTable {
     }
 
     /// Changes the definition of a collider, and invalidates its cached contacts. If the body changes, the
-    /// contacts must be removed before. Otherwise call `Link::reflag_of_collider` after it.
+    /// contacts must be removed before. Otherwise call `ContactManager::reflag_of_collider` after it.
     pub fn redefine(&mut self, id: u32, def: ColliderDef, bodies: &mut BodyTable) {
         debug_assert!(
             self[id].def.body == def.body || self[id].first_contact == NONE,

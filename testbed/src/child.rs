@@ -1,8 +1,8 @@
 //! Runs the window in a process of its own, so that this one survives if the window cannot open.
 //!
-//! Problems that [`crate::probe`] cannot detect, such as a display that refuses this user or a driver without a device,
-//! make libraries below the window panic, exit or crash. The process with the window reports on its standard output
-//! that it has drawn. If it fails without this report, there is no window.
+//! Problems that [`crate::probe`] cannot detect, such as a display that refuses this user or a driver without
+//! a device, make libraries below the window panic, exit or crash. The process with the window reports on its
+//! standard output that it has drawn. If it fails without this report, there is no window.
 
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::{Command, ExitCode, Stdio};

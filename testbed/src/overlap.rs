@@ -1,5 +1,5 @@
-//! The deepest overlap in a world, measured by parry, which shares no code with the engine's own contacts. Compiled
-//! once per dimension.
+//! The deepest overlap in a world, measured by parry, which shares no code with the engine's own contacts.
+//! Compiled once per dimension.
 
 use bevy_ecs::entity::Entity;
 
@@ -29,8 +29,8 @@ impl Body {
     }
 }
 
-/// The deepest overlap of two colliders of different bodies, one of them dynamic, in metres. Zero if there is none.
-/// Pairs that parry does not support are skipped.
+/// The deepest overlap of two colliders of different bodies, one of them dynamic, in metres. Zero if there is
+/// none. Pairs that parry does not support are skipped.
 pub fn deepest_overlap(mut parts: Vec<Body>) -> f32 {
     parts.retain(|part| part.bounds.mins.is_finite() && part.bounds.maxs.is_finite());
     parts.sort_by(|a, b| a.bounds.mins.x.total_cmp(&b.bounds.mins.x));

@@ -1,8 +1,8 @@
 //! Checks whether a window can open, before starting anything that would panic if not.
 //!
-//! The window needs an X11 display that accepts connections, the X libraries, the Vulkan loader, and at least one
-//! Vulkan driver. They are checked by files, sockets and environment variables only. [`crate::child`] handles all other
-//! failures.
+//! The window needs an X11 display that accepts connections, the X libraries, the Vulkan loader, and at least
+//! one Vulkan driver. They are checked by files, sockets and environment variables only. [`crate::child`]
+//! handles all other failures.
 
 use std::path::{Path, PathBuf};
 

@@ -283,8 +283,9 @@ fn who_stands_on_a_crate_weighs_on_it() {
     }
 }
 
-/// Rafts of different masses on ice are struck to 5 m/s: a character gets what a raft's mass can give to its own 70 kg, and friction adds
-/// g h in each step. A limb that kicks does not throw it, also if it jumps, and a ship takes it along. Teleports take it along whole.
+/// Rafts of different masses on ice are struck to 5 m/s: a character gets what a raft's mass can give to its
+/// own 70 kg, and friction adds g h in each step. A limb that kicks does not throw it, also if it jumps, and
+/// a ship takes it along. Teleports take it along whole.
 #[test]
 fn what_is_struck_below_a_character_gives_it_what_its_mass_can() {
     let cases = each(&[0.7, 7.0, 70.0, 70_000.0]);

@@ -85,7 +85,8 @@ fn corridor(rate: u32, friends: LayerMask) -> Crowd {
     crowd
 }
 
-/// Strangers that meet in the corridor stand still before each other: none is run over, lifted or pushed into a wall.
+/// Strangers that meet in the corridor stand still before each other: none is run over, lifted or
+/// pushed into a wall.
 #[test]
 fn a_hundred_strangers_queue_in_a_narrow_corridor() {
     for &rate in some(&[30, 60]) {
@@ -115,7 +116,8 @@ fn a_hundred_strangers_queue_in_a_narrow_corridor() {
     }
 }
 
-/// Two that walk at each other stand still where they met, at any rate: each moves out by half of what they overlap.
+/// Two that walk at each other stand still where they met, at any rate: each moves out by half of what
+/// they overlap.
 #[test]
 fn two_that_meet_do_not_shake() {
     for rate in usual() {

@@ -256,7 +256,8 @@ fn what_stands_does_not_move() {
     }
 }
 
-/// A corner of a box under the middle of a shape, met exactly; beside the middle, it is passed on its own side.
+/// A corner of a box under the middle of a shape, met exactly; beside the middle, it is passed on
+/// its own side.
 #[test]
 fn corners_of_boxes_are_met_where_they_are() {
     for (name, shape) in figures() {

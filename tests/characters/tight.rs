@@ -5,7 +5,8 @@ use avian::{math::*, prelude::*};
 
 const STANDING: Scalar = 0.9 + SKIN;
 
-/// Half of a tube of 768 facets, each at the distance of the skin: in space beside the character, in the plane below it.
+/// Half of a tube of 768 facets, each at the distance of the skin: in space beside the character, in the
+/// plane below it.
 #[test]
 fn a_groove_of_many_facets_holds_and_lets_go() {
     for &rate in some(&[30, 60]) {
@@ -82,7 +83,8 @@ fn a_wedge_holds_and_lets_go() {
     }
 }
 
-/// A gap too narrow by 8 mm between a wall and one that leans away by 2 degrees: to fit, it would have to rise by 23 cm.
+/// A gap too narrow by 8 mm between a wall and one that leans away by 2 degrees: to fit, it would have to
+/// rise by 23 cm.
 #[test]
 fn a_gap_between_walls_does_not_lift() {
     for rate in usual() {

@@ -155,7 +155,8 @@ fn an_observer_reads_the_contact_that_began() {
     assert!((impulse - weight).abs() < 0.1 * weight, "{impulse} N·s, weight {weight}");
 }
 
-/// A ball that rebounds within the step has left the floor before its last substep. The impulse is that of the whole step.
+/// A ball that rebounds within the step has left the floor before its last substep. The impulse is that of
+/// the whole step.
 #[test]
 fn short_blows_have_their_impulse() {
     #[derive(Resource, Default)]

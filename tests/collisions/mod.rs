@@ -473,7 +473,8 @@ fn what_ends_and_begins_between_two_steps_is_not_told() {
     assert_eq!(touched(&app, body).len(), 1, "the set is filled again");
 }
 
-/// At 30, 64 and 144 frames a second each message reaches a system in `Update` once, and the steps tell the same.
+/// At 30, 64 and 144 frames a second each message reaches a system in `Update` once, and the steps
+/// tell the same.
 #[test]
 fn each_message_is_read_once_at_any_frame_rate() {
     let run = |rate: u32| {

@@ -1,4 +1,5 @@
-//! Colliders that are despawned, or lose their shape: their collisions end at once, also while physics is paused.
+//! Colliders that are despawned, or lose their shape: their collisions end at once, also while
+//! physics is paused.
 
 use super::*;
 use bevy_ecs::system::RunSystemOnce;

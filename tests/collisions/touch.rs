@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// The gap between a ball of radius 0.5 and the floor, y = 0, at the end of the step in which their collision starts.
+/// The gap between a ball of radius 0.5 and the floor, y = 0, at the end of the step in which their
+/// collision starts.
 fn gap_at_start(app: &mut App, ball: Entity) -> Option<Scalar> {
     for _ in 0..300 {
         step(app);

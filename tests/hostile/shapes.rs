@@ -34,7 +34,8 @@ fn sizes_that_are_none_make_colliders_that_can_be_lived_with() {
             .collect();
         witness.is_undisturbed();
         for (i, body) in bodies.into_iter().enumerate() {
-            // They meet each other only: very large ones overlap all, and are pushed out by metres. What cannot be stepped is disabled.
+            // They meet each other only: very large ones overlap all, and are pushed out by metres. What
+            // cannot be stepped is disabled.
             let at = position(&witness.app, body);
             let is_there =
                 if is_disabled(&witness.app, body) { at.y == 1.0 } else { (-10.2..-1.9).contains(&at.y) };

@@ -95,7 +95,8 @@ fn a_rack_moves_by_the_radius_for_each_radian() {
     );
 }
 
-/// Two weights on a rope: a = g (m − n) / (m + n); with the ratio 2 a weight of 2 m hangs on one of m at rest.
+/// Two weights on a rope: a = g (m − n) / (m + n); with the ratio 2 a weight of 2 m hangs on one
+/// of m at rest.
 #[test]
 fn weights_on_a_pulley_move_by_their_difference() {
     let mut rig = Rig::new();

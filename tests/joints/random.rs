@@ -1,5 +1,5 @@
-//! Random changes of joints and bodies. Feature `validate`, which is on in tests, compares the tables with the world in every
-//! step.
+//! Random changes of joints and bodies. Feature `validate`, which is on in tests, compares the tables with
+//! the world in every step.
 
 use super::*;
 use avian::dynamics::{joints::EntityConstraint, solver::joint_graph::JointGraph};

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// A chassis that slides up and down on a post, and a wheel below it that stands on a static pad. Returns chassis, wheel and
-/// the wheel's joint.
+/// A chassis that slides up and down on a post, and a wheel below it that stands on a static pad. Returns
+/// chassis, wheel and the wheel's joint.
 fn stand(rig: &mut Rig, wheel: impl FnOnce(WheelJoint) -> WheelJoint) -> [Entity; 3] {
     let (post, chassis) = (rig.post(0.0, 0.0), rig.rod(0.0, 0.0));
     rig.spawn(PrismaticJoint::new(post, chassis).with_slider_axis(Vector::Y));

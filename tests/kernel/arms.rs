@@ -9,7 +9,8 @@ use kernel::math::{Rot, Vector};
 use kernel::solver::{Axis, Drive, Give, JointSolver, Motor, Spring};
 use kernel::table::BodyKind;
 
-/// An arm of three links from a post, welded but for one hinge. Returns the hinge, its bodies, and the moment of what hangs on it.
+/// An arm of three links from a post, welded but for one hinge. Returns the hinge, its bodies, and the moment
+/// of what hangs on it.
 fn arm(sim: &mut Sim, hinged: usize, axis: Axis) -> (u32, [u32; 2], f32) {
     let mut last = (post(sim, Vector::ZERO), Vector::ZERO);
     let (mut joint, mut bodies, mut moment) = (0, [0; 2], 0.0);
@@ -46,7 +47,8 @@ fn a_limit_that_gives_way_holds_in_a_tree() {
     }
 }
 
-/// A servo per mass sags by the same angle wherever it is in the tree: g over the square of its rate, for what it moves.
+/// A servo per mass sags by the same angle wherever it is in the tree: g over the square of its rate, for
+/// what it moves.
 #[test]
 fn a_servo_of_a_tree_is_as_strong_as_what_it_moves_is_heavy() {
     for hinged in 0..3 {

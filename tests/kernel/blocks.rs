@@ -5,7 +5,7 @@ use super::dim::{any_rotation, channel, riders, sized};
 use super::extreme::Dice;
 use super::sim::Sim;
 use crate::kernel;
-use kernel::manifold::{CompositeBuffers, LocalManifold, Look, collide_composite};
+use kernel::manifold::{CompositeBuffers, LocalManifold, ManifoldQuery, collide_composite};
 use kernel::math::{DIM, Pose, Rot, Vector};
 use kernel::shape::{Aabb, Cuboid, Shape, Surface};
 use kernel::table::BodyKind;
@@ -17,12 +17,13 @@ const SIDEWAYS: f32 = 0.004;
 /// The contacts of two shapes in A's frame.
 fn contacts(a: &Shape, b: &Shape, pose: &Pose, motion: Vector) -> Vec<LocalManifold> {
     let (mut buffers, mut out) = (CompositeBuffers::default(), Vec::new());
-    let look = Look { motion, ..Look::up_to(PREDICTION) };
-    collide_composite(a, b, pose, look, &mut buffers, &mut out);
+    let query = ManifoldQuery { motion, ..ManifoldQuery::up_to(PREDICTION) };
+    collide_composite(a, b, pose, query, &mut buffers, &mut out);
     out
 }
 
-/// Panics if the contacts of what lies on something do not bear it from below, at the given gap. Others may hardly overlap.
+/// Panics if the contacts of what lies on something do not bear it from below, at the given gap. Others may
+/// hardly overlap.
 fn check_bearing(found: &[LocalManifold], gap: f32, up: Vector, what: &str) {
     let least = found.iter().map(LocalManifold::lower_bound).fold(f32::INFINITY, f32::min);
     assert!((least - gap).abs() < 1e-3, "{what}: {least} m, not {gap}: {found:?}");
@@ -314,9 +315,14 @@ fn merged_points_keep_when_each_is_met() {
     let (motion, pose) = (sized(0.4, -0.03, 0.0), Pose::new(Vector::Y * 0.5, Rot::IDENTITY));
     let groups: Vec<u8> = (0..80).collect();
     let [merged, apart] = [&[][..], &groups].map(|groups| {
-        let look = Look { motion, ground: [true, false], groups: [groups, &[]], ..Look::up_to(PREDICTION) };
+        let query = ManifoldQuery {
+            motion,
+            ground: [true, false],
+            groups: [groups, &[]],
+            ..ManifoldQuery::up_to(PREDICTION)
+        };
         let (mut buffers, mut out) = (CompositeBuffers::default(), Vec::new());
-        collide_composite(&floor, &shape, &pose, look, &mut buffers, &mut out);
+        collide_composite(&floor, &shape, &pose, query, &mut buffers, &mut out);
         out
     });
     let mut has_several = false;

@@ -64,9 +64,10 @@ fn balls_and_flat_boxes_rebound_alike_in_any_length_unit() {
     }
 }
 
-/// Without gravity and friction an elastic box keeps its energy. What touches more slowly than the threshold is not elastic. One of
-/// 40 gained up to 60 %: sweeps over the points of an impact ended too soon, and points that another one had slowed down rebounded
-/// with the speed of before. One of 32 lost up to 46 %: points that turning brought to touch were stopped.
+/// Without gravity and friction an elastic box keeps its energy. What touches more slowly than the threshold
+/// is not elastic. One of 40 gained up to 60 %: sweeps over the points of an impact ended too soon, and
+/// points that another one had slowed down rebounded with the speed of before. One of 32 lost up to 46 %:
+/// points that turning brought to touch were stopped.
 #[test]
 fn elastic_boxes_keep_their_energy_in_a_bounce() {
     let grounds = [Shape::HalfSpace(HalfSpace { normal: Vector::Y }), terrain(0.5, |_, _| 0.0)];
@@ -88,7 +89,8 @@ fn elastic_boxes_keep_their_energy_in_a_bounce() {
                 let start = sim.energy();
                 sim.steps((0.8 * rate) as usize);
                 let share = sim.energy() / start;
-                // A corner that touches at 1 m/s and is stopped may take as much as m (1 m/s)² / 2, a ninth of the least start.
+                // A corner that touches at 1 m/s and is stopped may take as much as m (1 m/s)² / 2, a ninth
+                // of the least start.
                 if !(0.94..=1.005).contains(&share) {
                     bad.push(format!("seed {seed}, floor {floor}, {rate} Hz: {share} of its energy"));
                 }

@@ -9,7 +9,8 @@ use kernel::table::{BodyKind, Velocity};
 
 const GRAVITY: f32 = 10.0;
 
-/// A plate of 20 m with a body at its centre. Returns plate and body. The body is added first if `body_first`.
+/// A plate of 20 m with a body at its centre. Returns plate and body. The body is added first if
+/// `body_first`.
 struct Plate {
     sim: Sim,
     plate: u32,
@@ -110,7 +111,7 @@ fn a_plate_tilted_slowly_is_as_a_slope_that_was_always_there() {
                 for id in [p.plate, p.body] {
                     let mut material = p.sim.colliders[id].def.material;
                     material.friction.coefficient = 0.1;
-                    p.sim.link().set_material(id, material);
+                    p.sim.contact_manager().set_material(id, material);
                 }
                 p.stop();
             }
@@ -150,8 +151,9 @@ fn a_box_rides_a_plate_that_rocks() {
                 plate.turn(axis * 0.175, 120);
             }
             let way = (plate.place() - from).length();
-            // The cube's centre is h = 0.5 m over the pivot. Where the plate turns back at once, friction takes time to change
-            // its speed by 2 ω h, and the cube slips by (2 ω h)² / 2 μ g. Slips to and fro cancel, but for one.
+            // The cube's centre is h = 0.5 m over the pivot. Where the plate turns back at once, friction
+            // takes time to change its speed by 2 ω h, and the cube slips by (2 ω h)² / 2 μ g. Slips to and
+            // fro cancel, but for one.
             let about_vertical = upright().map_or(0.0, |up| axis.dot(up));
             let change = 2.0 * 0.175 * 0.5 * (1.0 - about_vertical * about_vertical).sqrt();
             let slip = change * change / (2.0 * 0.6 * GRAVITY);

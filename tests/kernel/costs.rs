@@ -1,7 +1,8 @@
 //! The scenes that `tools/cost.sh` counts instructions in.
 //!
-//! Without a scene's name the program lists names and steps. With one it runs the scene and prints a digest of
-//! the motion. A profiler collects in [`measured_steps`] only: building and settling a scene is not counted.
+//! Without a scene's name the program lists names and steps. With one it runs the scene and prints a
+//! digest of the motion. A profiler collects in [`measured_steps`] only: building and settling a scene
+//! is not counted.
 //!
 //! Shapes and places are written out here rather than taken from other tests. Two commits then run the same
 //! scene.

@@ -28,8 +28,8 @@ fn momentum(sim: &Sim, ids: &[u32]) -> Vector {
     })
 }
 
-/// A hundred bodies of one shape at one point, each rotated further than the last. Neither their velocities nor their
-/// displacements per step may exceed the push-out speed.
+/// A hundred bodies of one shape at one point, each rotated further than the last. Neither their velocities
+/// nor their displacements per step may exceed the push-out speed.
 fn come_apart(shape: &Shape, angle: f32, substeps: u32) {
     let mut sim = Sim::new();
     sim.gravity = Vector::ZERO;
@@ -242,14 +242,15 @@ fn a_crowd_has_the_same_bits_with_four_lanes_and_with_as_many_as_there_are() {
     assert_eq!(run(true), run(false));
 }
 
-/// Falling bodies overlap those below deeply and must still be stopped: only bodies that were placed inside of each
-/// other are separated without force. Which boxes wedge is chance, so the bound is for the median heap.
+/// Falling bodies overlap those below deeply and must still be stopped: only bodies that were placed
+/// inside of each other are separated without force. Which boxes wedge is chance, so the bound is for
+/// the median heap.
 #[test]
 fn a_heap_of_boxes_that_fell_far_does_not_sink_into_itself() {
     let mut depths: Vec<f32> = (0..45).map(depth_of_a_heap_that_fell_far).collect();
     depths.sort_by(f32::total_cmp);
-    // Soft contacts yield two centimetres under twenty layers of three times the weight. In 3D the rule that separated
-    // all deep contacts without force left 15 to 27 cm; in 2D it makes no difference.
+    // Soft contacts yield two centimetres under twenty layers of three times the weight. In 3D the rule that
+    // separated all deep contacts without force left 15 to 27 cm; in 2D it makes no difference.
     let most = if kernel::math::DIM == 2 { 0.022 } else { 0.03 };
     assert!(depths[22] < most, "{depths:?} m deep when they have come to rest");
 }

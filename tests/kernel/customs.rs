@@ -10,8 +10,8 @@ use kernel::solver::{CustomBody, CustomConstraint, CustomError, SubstepParams};
 use kernel::table::{BodyKind, Velocity};
 use std::any::Any;
 
-/// A spring that pulls where it is longer than its length: an oscillator of a stiffness in N/m and a damping in N·s/m, implicit in
-/// each substep.
+/// A spring that pulls where it is longer than its length: an oscillator of a stiffness in N/m and a damping
+/// in N·s/m, implicit in each substep.
 #[derive(Clone)]
 struct Rope {
     length: f32,
@@ -224,7 +224,7 @@ fn what_a_rope_holds_sleeps_and_wakes_with_it() {
     sim.tie([b, c], None).expect("two bodies");
     sim.steps(120);
     assert!([a, b, c].iter().all(|id| !sim.bodies[*id].awake));
-    sim.link().wake_body(c);
+    sim.contact_manager().wake_body(c);
     assert!([a, b, c].iter().all(|id| sim.bodies[*id].awake));
     sim.steps(120);
     sim.untie(id).expect("it is there");
@@ -232,11 +232,11 @@ fn what_a_rope_holds_sleeps_and_wakes_with_it() {
     assert_eq!(sim.untie(id), Err(CustomError::NoConstraint(id)));
     sim.steps(10);
     let again = tie(&mut sim, [a, b], Rope::new(1.0));
-    sim.link().retype(b, BodyKind::Static);
+    sim.contact_manager().retype(b, BodyKind::Static);
     sim.steps(10);
-    sim.link().retype(a, BodyKind::Static);
+    sim.contact_manager().retype(a, BodyKind::Static);
     sim.steps(10);
-    sim.link().retype(b, BodyKind::Kinematic);
+    sim.contact_manager().retype(b, BodyKind::Kinematic);
     sim.steps(10);
     sim.untie(again).expect("retyping keeps it");
 }

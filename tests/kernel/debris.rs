@@ -30,7 +30,8 @@ fn pieces() -> Vec<(&'static str, Shape)> {
     ]
 }
 
-/// Throws pieces that do not meet each other, and counts those that pass the ground, or keep a speed but not move.
+/// Throws pieces that do not meet each other, and counts those that pass the ground, or keep a speed
+/// but not move.
 fn stuck(ground: &Shape, piece: &Shape, speed: f32) -> [usize; 2] {
     let mut sim = Sim::new();
     sim.checked = false;

@@ -54,8 +54,8 @@ pub const BALL_INERTIA: f32 = 0.5;
 /// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
 pub const PILES: [(usize, usize, u64, usize); 2] = [(10, 100, 4, 8), (21, 441, 2, 12)];
 
-/// Shapes that are hard to bring to rest, about a metre wide: a coin, a needle, a triangle, a round box, and an
-/// octagon.
+/// Shapes that are hard to bring to rest, about a metre wide: a coin, a needle, a triangle, a round box,
+/// and an octagon.
 pub fn restless() -> Vec<(&'static str, Shape)> {
     let hull = |points: &[Vector], radius: f32| {
         Shape::Hull(Arc::new(Hull::convex_hull_of(points, radius).expect("they span an area")))

@@ -65,8 +65,8 @@ pub const BALL_INERTIA: f32 = 0.4;
 /// Piles that fall asleep: width in bodies, number of bodies, number of seeds, seconds.
 pub const PILES: [(usize, usize, u64, usize); 2] = [(5, 100, 4, 8), (7, 441, 2, 12)];
 
-/// Shapes that are hard to bring to rest, about a metre wide: a coin, a needle, an icosahedron, and a hull of twelve corners
-/// by chance.
+/// Shapes that are hard to bring to rest, about a metre wide: a coin, a needle, an icosahedron, and a hull of
+/// twelve corners by chance.
 pub fn restless() -> Vec<(&'static str, Shape)> {
     let hull =
         |points: &[Vector]| Shape::Hull(Arc::new(Hull::convex_hull_of(points).expect("they span a solid")));

@@ -128,7 +128,7 @@ fn a_chain_of_twenty_hangs_still_and_falls_asleep() {
     assert_eq!(sim.bodies.awake_dynamic().count(), 0, "it sleeps as one");
     assert!(sim.colors.is_empty(), "what sleeps has no colours");
     let before = sim.bodies.poses.clone();
-    sim.link().wake_body(beads[10]);
+    sim.contact_manager().wake_body(beads[10]);
     assert_eq!(sim.bodies.awake_dynamic().count(), 20, "it wakes as one");
     sim.steps(120);
     let most = beads.iter().map(|bead| {
@@ -165,11 +165,11 @@ fn what_is_removed_wakes_what_it_held() {
 
     // The chain hangs from a bead that becomes dynamic.
     let mut sim = asleep.clone();
-    sim.link().retype(beads[0], BodyKind::Dynamic);
+    sim.contact_manager().retype(beads[0], BodyKind::Dynamic);
     assert_eq!(sim.bodies.awake_dynamic().count(), 7);
     sim.steps(60);
     assert!(sim.position(beads[0]).to_local().y < -4.0, "all fall");
-    sim.link().retype(beads[3], BodyKind::Static);
+    sim.contact_manager().retype(beads[3], BodyKind::Static);
     sim.steps(30);
     assert!((distance(&sim, beads[3], beads[4]) - 0.5).abs() < 0.02, "and hang from another one");
 }
@@ -183,20 +183,20 @@ fn a_kinematic_body_pulls_what_hangs_on_it() {
     let bob = bead(&mut sim, BodyKind::Dynamic, Vector::X * -1.0);
     sim.join(rod(hand, bob, 1.0)).unwrap();
     sim.bodies.set_velocity(hand, Velocity { linear: Vector::X * 0.05, ..Velocity::default() });
-    let island = sim.link().island_of(bob).unwrap();
-    assert!(sim.link().is_carried(island), "what is pulled may not sleep, however slowly");
+    let island = sim.contact_manager().island_of(bob).unwrap();
+    assert!(sim.contact_manager().is_carried(island), "what is pulled may not sleep, however slowly");
     sim.sleeping = false;
     sim.steps(240);
     assert!((distance(&sim, hand, bob) - 1.0).abs() < 1.0e-3);
     assert!((sim.position(hand).to_local().x - 0.2).abs() < 1.0e-4, "the hand goes its own way");
     sim.bodies.set_velocity(hand, Velocity::default());
-    sim.link().set_kinematic_awake(hand, false);
+    sim.contact_manager().set_kinematic_awake(hand, false);
     sim.bodies.set_velocity(bob, Velocity::default());
-    assert!(!sim.link().is_carried(island));
+    assert!(!sim.contact_manager().is_carried(island));
     sim.sleeping = true;
     sim.steps(60);
     assert_eq!(sim.bodies.awake_dynamic().count(), 0);
-    sim.link().set_kinematic_awake(hand, true);
+    sim.contact_manager().set_kinematic_awake(hand, true);
     assert_eq!(sim.bodies.awake_dynamic().count(), 1, "a hand that wakes wakes what it holds");
 }
 
@@ -235,7 +235,10 @@ fn net(sim: &mut Sim) {
     }
     sim.locks[rows[2][5] as usize] = kernel::math::AxisLocks(0b100_000);
     assert!(
-        sim.link().colors.constraints(kernel::graph::ConstraintKind::Joint, kernel::graph::OVERFLOW).len()
+        sim.contact_manager()
+            .colors
+            .constraints(kernel::graph::ConstraintKind::Joint, kernel::graph::OVERFLOW)
+            .len()
             > 2
     );
     sim.steps(90);
@@ -291,7 +294,8 @@ fn hostile_input_is_told() {
     assert_eq!(sim.part(0), Err(JointError::NoJoint(0)));
     assert_eq!(sim.rejoin(0, rod(a, b, 1.0)), Err(JointError::NoJoint(0)));
     assert_eq!(sim.reaction(9), Default::default());
-    // Two coincident points have no direction, but separate. Constraints between immovable bodies have no effect.
+    // Two coincident points have no direction, but separate. Constraints between immovable bodies
+    // have no effect.
     sim.gravity = Vector::ZERO;
     let c = bead(&mut sim, BodyKind::Static, Vector::Y * 3.0);
     let d = bead(&mut sim, BodyKind::Static, Vector::Y * 5.0);

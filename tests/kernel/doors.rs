@@ -10,8 +10,8 @@ use kernel::table::{BodyKind, Velocity};
 const DEPTH: f32 = 0.2;
 const OPENING: f32 = 5.0;
 
-/// The maximum speed of the crate in the half second after the door has begun to open, and its way, in metres. The door closes at
-/// 2 m/s, and waits for some seconds.
+/// The maximum speed of the crate in the half second after the door has begun to open, and its way, in
+/// metres. The door closes at 2 m/s, and waits for some seconds.
 fn opened(clock: (f32, u32), has_floor: bool, wait: f32, phase: f32) -> [f32; 2] {
     let mut sim = clocked(clock);
     let mut solid = |kind, half, at| sim.add_with(kind, cuboid(half), at, Rot::IDENTITY, 0.3, 0.0);
@@ -42,7 +42,8 @@ fn opened(clock: (f32, u32), has_floor: bool, wait: f32, phase: f32) -> [f32; 2]
     [fastest, (sim.position(crate_id).to_local() - start).length()]
 }
 
-/// The crate is pushed out of the wall, and is not dragged along by the door. It has moved at up to 6 m/s, and by 2 m.
+/// The crate is pushed out of the wall, and is not dragged along by the door. It has moved at up to
+/// 6 m/s, and by 2 m.
 #[test]
 fn a_door_that_opens_leaves_the_crate_that_it_pressed() {
     let mut bad = Vec::new();

@@ -35,7 +35,8 @@ fn velocity_of(sim: &Sim, id: u32) -> Vector {
     sim.bodies.velocities[id as usize].linear
 }
 
-/// Whether a body that passes the right edge of a floor by a gap is deflected. `slope` is the angle of its path to the vertical.
+/// Whether a body that passes the right edge of a floor by a gap is deflected. `slope` is the angle of its
+/// path to the vertical.
 fn is_deflected(
     pieces: &[(Shape, Vector)],
     edge: f32,

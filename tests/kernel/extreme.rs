@@ -130,8 +130,9 @@ fn world(seed: u64) -> (Sim, Start) {
     (sim, start)
 }
 
-/// Whether bodies stay below three times the fastest centre at the start, what they fall, the speed at which a kinematic body
-/// throws, and the speed that all energy at the start gives to one of them. A lost body makes a step panic.
+/// Whether bodies stay below three times the fastest centre at the start, what they fall, the speed at which
+/// a kinematic body throws, and the speed that all energy at the start gives to one of them. A lost body
+/// makes a step panic.
 fn is_calm(seed: u64) -> bool {
     let (mut sim, start) = world(seed);
     (1..=180).all(|step| {

@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 /// The gravity of the simulation, m/s².
 const G: f32 = 10.0;
-/// Half sizes of a box so flat that friction hardly shifts its weight, and so short that it hardly matters which of its points
-/// carry the weight across a border.
+/// Half sizes of a box so flat that friction hardly shifts its weight, and so short that it hardly matters
+/// which of its points carry the weight across a border.
 const LENGTH: f32 = 0.1;
 const HEIGHT: f32 = 0.02;
 
@@ -41,7 +41,8 @@ fn by_place(
     Some(Arc::new(FacetMaterials::new(materials, &facets)))
 }
 
-/// A flat surface with materials and a body of friction 1 and restitution 1 on it. The surface is added first or last.
+/// A flat surface with materials and a body of friction 1 and restitution 1 on it. The surface is added
+/// first or last.
 fn world(
     materials: Vec<FacetMaterial>,
     choose: impl Fn(f32) -> u8,
@@ -63,7 +64,7 @@ fn world(
         let body = add_body(&mut sim);
         (add_ground(&mut sim), body)
     };
-    sim.link().set_facets(ground, facets);
+    sim.contact_manager().set_facets(ground, facets);
     (sim, ground, body)
 }
 
@@ -169,7 +170,7 @@ fn equal_materials_are_one_manifold_and_rest_as_without() {
         let (mut sim, ground, body) =
             world(table, |x| u8::from(x > 1.0) * materials.unwrap_or(0), slab(), at, true);
         if materials.is_none() {
-            sim.link().set_facets(ground, None);
+            sim.contact_manager().set_facets(ground, None);
         }
         sim.steps(30);
         let found = groups(&sim, ground, body);
@@ -191,18 +192,18 @@ fn other_materials_count_from_the_next_step_also_while_asleep() {
     sim.steps(120);
     assert!(!sim.bodies[body].awake, "it sleeps");
     let ice = by_place(&terrain(0.5, |_, _| 0.0), vec![material(0.0, 0.0, Vector::ZERO)], |_| 0);
-    sim.link().set_facets(ground, ice);
-    sim.link().wake_body(body);
+    sim.contact_manager().set_facets(ground, ice);
+    sim.contact_manager().wake_body(body);
     sim.bodies.velocities[body as usize].linear = Vector::X * 2.0;
     sim.steps(30);
     assert!((sim.bodies.velocities[body as usize].linear.x - 2.0).abs() < 1e-4, "it slides on ice");
     let rubber = by_place(&terrain(0.5, |_, _| 0.0), materials(), |_| 0);
-    sim.link().set_facets(ground, rubber);
+    sim.contact_manager().set_facets(ground, rubber);
     sim.steps(12);
     let v = sim.bodies.velocities[body as usize].linear.x;
     assert!((v - (2.0 - 0.5 * G * 0.2)).abs() < 0.1, "{v} m/s on rubber");
     // A table that is shorter than the surface, or empty, leaves the material of the collider.
-    sim.link().set_facets(ground, Some(Arc::new(FacetMaterials::new(vec![], &[0, 1]))));
+    sim.contact_manager().set_facets(ground, Some(Arc::new(FacetMaterials::new(vec![], &[0, 1]))));
     sim.steps(60);
     assert!(sim.bodies.velocities[body as usize].linear.x.abs() < 1e-3);
 }

@@ -196,7 +196,8 @@ pub fn bent() -> Vec<(&'static str, Shape, Shape)> {
         .collect()
 }
 
-/// The rotation of a box that has an edge ahead, and the height of its middle over the floor: a half size is 0.2.
+/// The rotation of a box that has an edge ahead, and the height of its middle over the floor: a
+/// half size is 0.2.
 pub fn on_edge() -> (Rot, f32) {
     (Rot::from_angle(core::f32::consts::FRAC_PI_4), 0.2 * core::f32::consts::SQRT_2)
 }

@@ -124,8 +124,8 @@ pub fn squares(
     (vertices, facets)
 }
 
-/// Flat floors of meshes as they come from editors: in chunks, with triangles twice and from behind, with triangles of which two corners
-/// are in one place, and with vertices on the sides of neighbours.
+/// Flat floors of meshes as they come from editors: in chunks, with triangles twice and from behind, with
+/// triangles of which two corners are in one place, and with vertices on the sides of neighbours.
 pub fn messy() -> Vec<Floor> {
     let surface = |(vertices, facets): (Vec<Vector>, Vec<[u32; 3]>)| {
         Shape::surface(Surface::new(vertices, facets).expect("a surface"))
@@ -300,7 +300,8 @@ pub fn bent() -> Vec<(&'static str, Shape, Shape)> {
         .collect()
 }
 
-/// The rotation of a box that has an edge ahead, and the height of its middle over the floor: a half size is 0.2.
+/// The rotation of a box that has an edge ahead, and the height of its middle over the floor: a
+/// half size is 0.2.
 pub fn on_edge() -> (Rot, f32) {
     (Rot::from_axis_angle(Vector::Y, 0.5 * FRAC_PI_2), 0.2)
 }

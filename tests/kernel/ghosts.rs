@@ -144,8 +144,8 @@ fn slides<'a>(pieces: &'a [(Shape, Vector)], speeds: &[f32]) -> Vec<(&'static st
     all
 }
 
-/// Runs trials, and asserts that none lost or gained 0.1 % of its speed or spin, rose by half a millimetre, or strayed by
-/// more than `aside`.
+/// Runs trials, and asserts that none lost or gained 0.1 % of its speed or spin, rose by half a millimetre,
+/// or strayed by more than `aside`.
 fn assert_undisturbed<'a>(aside: f32, trials: impl Iterator<Item = (String, Trial<'a>)>) {
     let mut bad = Vec::new();
     for (name, trial) in trials {
@@ -327,8 +327,8 @@ fn a_groove_holds_what_lies_in_it() {
     }
 }
 
-/// The next piece met the slope of a body that is wider at its foot, and threw it up or stopped it: the contact was taken for one
-/// below the floor. At 1 m/s a flat triangle still loses 0.12 % in 10 m.
+/// The next piece met the slope of a body that is wider at its foot, and threw it up or stopped it: the
+/// contact was taken for one below the floor. At 1 m/s a flat triangle still loses 0.12 % in 10 m.
 #[test]
 fn feet_slide_over_flush_pieces() {
     for (floor, pieces) in tiles().into_iter().chain(messy()) {
@@ -373,7 +373,8 @@ fn what_stands_on_an_edge_slides_over_flush_pieces() {
     }
 }
 
-/// A body that is wider at its foot has one point at a wall, on the plane of the floor, and walked into the wall.
+/// A body that is wider at its foot has one point at a wall, on the plane of the floor, and walked
+/// into the wall.
 #[test]
 fn feet_stop_at_walls() {
     let pieces = |half: Vector, at: Vector| (Shape::Cuboid(Cuboid { half }), at);

@@ -1,9 +1,9 @@
-//! Golden hashes: final states of whole scenes, bit by bit, for any number of workers and lanes, in any profile and on
-//! any machine.
+//! Golden hashes: final states of whole scenes, bit by bit, for any number of workers and lanes, in any
+//! profile and on any machine.
 //!
-//! A scene may use sums, products, quotients, square roots and the kernel's own functions, but not libm. The expected
-//! hashes are in `golden2.rs` and `golden3.rs`. If a change of the simulation is intended, the table printed by the
-//! failing test replaces the old one, and the commit says why.
+//! A scene may use sums, products, quotients, square roots and the kernel's own functions, but not libm. The
+//! expected hashes are in `golden2.rs` and `golden3.rs`. If a change of the simulation is intended, the table
+//! printed by the failing test replaces the old one, and the commit says why.
 
 use super::dim::golden_dim::{GOLDEN, coordinates, numbers, shapes, spun, terrain, tilted, trough};
 use super::dim::{container, sized, terrain as surface, turned};
@@ -272,14 +272,14 @@ fn sleepers(sim: &mut Sim) {
     let half = sized(4.0, 0.5, 4.0);
     let lift =
         sim.add(BodyKind::Kinematic, Shape::Cuboid(Cuboid { half }), sized(20.0, -0.5, 0.0), Rot::IDENTITY);
-    sim.link().set_kinematic_awake(lift, false);
+    sim.contact_manager().set_kinematic_awake(lift, false);
     let [_, _, lifted] = [-20.0, 0.0, 20.0].map(|x| stack(sim, 6, x));
     sim.steps(90);
     assert_eq!(sim.bodies.awake_dynamic().count(), 0, "they sleep by now");
     let id = sim.ball(0.6, sized(-26.0, 1.5, 0.0));
     push(sim, id, Vector::X * 15.0);
-    sim.link().set_kinematic_awake(lift, true);
-    sim.link().wake_body(lifted);
+    sim.contact_manager().set_kinematic_awake(lift, true);
+    sim.contact_manager().wake_body(lifted);
     sim.bodies.set_velocity(lift, Velocity { linear: Vector::Y, ..Velocity::default() });
     let mut most = 0;
     for _ in 0..60 {
@@ -288,7 +288,7 @@ fn sleepers(sim: &mut Sim) {
     }
     assert_eq!(most, 43, "two woke, the third was not touched");
     sim.bodies.set_velocity(lift, Velocity::default());
-    sim.link().set_kinematic_awake(lift, false);
+    sim.contact_manager().set_kinematic_awake(lift, false);
     sim.steps(60);
 }
 
@@ -378,7 +378,7 @@ fn changes(sim: &mut Sim) {
     }
     for round in 0..10u32 {
         let id = first + (7 * round) % 60;
-        sim.link().wake_body(id);
+        sim.contact_manager().wake_body(id);
         let at = sim.position(id).to_local();
         match round % 5 {
             0 => {
@@ -387,7 +387,7 @@ fn changes(sim: &mut Sim) {
             }
             1 => push(sim, id, sized(3.0, 4.0, 1.0)),
             2 => sim.reshape(id, block(0.7)),
-            3 => sim.link().retype(id, BodyKind::Static),
+            3 => sim.contact_manager().retype(id, BodyKind::Static),
             _ => {
                 sim.ball(0.4, at + Vector::Y * 6.0);
             }
@@ -455,8 +455,9 @@ fn in_metres(sim: &Sim) -> Vec<f64> {
     all
 }
 
-/// The scenes that end otherwise in worlds with other length units, powers of two, and the greatest difference. Bodies have the
-/// masses that they have in metres. Scenes that act on their bodies after the first step do so in metres, and are left out.
+/// The scenes that end otherwise in worlds with other length units, powers of two, and the greatest
+/// difference. Bodies have the masses that they have in metres. Scenes that act on their bodies after the
+/// first step do so in metres, and are left out.
 pub fn differing(units: &[f32]) -> Vec<(&'static str, f32, f64)> {
     let mut list = Vec::new();
     for (name, run) in SCENES.into_iter().filter(|(name, _)| !["sleepers", "changes"].contains(name)) {

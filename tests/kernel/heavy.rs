@@ -149,8 +149,8 @@ fn turning(sim: &Sim, ids: &[u32]) -> (f64, f64) {
     })
 }
 
-/// A box of 20 kg drops at 3 m/s on one of two weights of 100 kg on a seesaw of 1 kg: what bears the plank has no
-/// arm, so only gravity changes the angular momentum.
+/// A box of 20 kg drops at 3 m/s on one of two weights of 100 kg on a seesaw of 1 kg: what bears the plank
+/// has no arm, so only gravity changes the angular momentum.
 #[test]
 fn a_blow_on_a_seesaw_keeps_angular_momentum() {
     let mut bad = Vec::new();

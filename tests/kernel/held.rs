@@ -6,7 +6,8 @@ use kernel::math::{AxisLocks, DIM, Rot, Vector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::BodyKind;
 
-/// A heap of boxes and balls that overlap each other and the floor by 5 cm and more. Seven in ten have locked axes.
+/// A heap of boxes and balls that overlap each other and the floor by 5 cm and more. Seven in ten
+/// have locked axes.
 fn heap(locks: AxisLocks) -> Sim {
     let mut sim = Sim::new();
     sim.floor();
@@ -62,7 +63,7 @@ fn rows_that_were_not_built_are_not_solved() {
     sim.steps(5);
     // The floor comes to rest, and its row is given to another body.
     sim.builds_rows = false;
-    sim.link().set_kinematic_awake(floor, false);
+    sim.contact_manager().set_kinematic_awake(floor, false);
     let before = sim.bodies.poses[1].center.y;
     sim.steps(20);
     assert!(sim.bodies.poses[1].center.y < before - 0.3, "nothing holds it");

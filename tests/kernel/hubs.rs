@@ -16,7 +16,8 @@ fn hub_half() -> Vector {
     sized(0.5 * SPACING * COUNT as f32 + 1.0, 0.25, 1.0)
 }
 
-/// A beam with its middle at a height, and a row of bodies on it: a box, then a ball, and so on. The beam is the first.
+/// A beam with its middle at a height, and a row of bodies on it: a box, then a ball, and so on. The beam
+/// is the first.
 fn beam(sim: &mut Sim, height: f32, gap: f32) -> Vec<u32> {
     let hub = sim.cuboid(hub_half(), Vector::Y * height);
     let mut ids = vec![hub];
@@ -63,8 +64,8 @@ fn what_lies_on_a_long_beam_comes_to_rest() {
     }
 }
 
-/// Impulses between a hub and the others balance: bodies thrown onto a free beam keep the sum of momenta, and gain no
-/// energy.
+/// Impulses between a hub and the others balance: bodies thrown onto a free beam keep the sum of momenta, and
+/// gain no energy.
 #[test]
 fn bodies_thrown_onto_a_free_beam_keep_momentum() {
     for mass in [1.0, 0.01] {

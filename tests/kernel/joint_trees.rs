@@ -81,7 +81,8 @@ fn a_chain_that_swings_holds_any_load() {
     }
 }
 
-/// Beads on rods, with a heavy ball at the end: distances without locked coordinates are members of trees as well.
+/// Beads on rods, with a heavy ball at the end: distances without locked coordinates are members of
+/// trees as well.
 #[test]
 fn a_rope_of_distances_hardly_stretches() {
     for load in LOADS {
@@ -534,7 +535,8 @@ fn trees_do_not_depend_on_workers() {
     }
 }
 
-/// A mast and a jib of welds bear a load on a cable, and hold to the millimetre; the foot tells weight and moment.
+/// A mast and a jib of welds bear a load on a cable, and hold to the millimetre; the foot tells
+/// weight and moment.
 #[test]
 fn a_crane_holds_in_rigid_mode() {
     for (rate, substeps) in [(60.0f32, 4u32), (64.0, 6)] {

@@ -429,9 +429,9 @@ fn what_is_joined_sleeps_and_wakes_together() {
     assert!(sim.rejoin(id, JointDef { bodies: [ids[1], ids[0]], ..def }).is_err());
 }
 
-/// Random settings of all coordinates are survived, and without motors give no more energy than springs that are off by x have at
-/// first, ½ x² / α, and than rigid coordinates give, which take back errors of some metres and half turns. 170 m/s is the fastest
-/// seen (3D, f32, seed 86); 180 m/s are allowed.
+/// Random settings of all coordinates are survived, and without motors give no more energy than springs that
+/// are off by x have at first, ½ x² / α, and than rigid coordinates give, which take back errors of some
+/// metres and half turns. 170 m/s is the fastest seen (3D, f32, seed 86); 180 m/s are allowed.
 #[test]
 fn random_joints_give_no_more_energy_than_they_have() {
     use super::extreme::Dice;
@@ -490,8 +490,8 @@ fn random_joints_give_no_more_energy_than_they_have() {
     }
 }
 
-/// A distance that is to be less than the locked shift across it throws no body along the rail: it gets no farther than where it was
-/// let go. Both are equally stiff and share what they are off.
+/// A distance that is to be less than the locked shift across it throws no body along the rail: it gets no
+/// farther than where it was let go. Both are equally stiff and share what they are off.
 #[test]
 fn a_distance_that_cannot_be_reached_throws_no_body() {
     for (length, across) in [(0.0, 0.8f32), (0.5, 0.8), (0.0, 0.05)] {

@@ -71,8 +71,8 @@ fn reach(shape: &Shape, rotation: Rot, direction: Vector) -> f32 {
 /// Duration of each run, in quarter seconds.
 const QUARTERS: usize = 80;
 
-/// Maximum rise of a body's energy, as a share of its initial energy. The body begins with a spin about its y axis, in rad/s.
-/// Energies are the maximum of each quarter second.
+/// Maximum rise of a body's energy, as a share of its initial energy. The body begins with a spin about its y
+/// axis, in rad/s. Energies are the maximum of each quarter second.
 fn rise(shape: &Shape, tilt: f32, friction: f32, spin: f32) -> f64 {
     let mut sim = Sim::new();
     sim.checked = false;
@@ -99,7 +99,8 @@ fn rise(shape: &Shape, tilt: f32, friction: f32, spin: f32) -> f64 {
     rise / start
 }
 
-/// The largest rise of a shape's energy over 30 angles at which it leans. Every second angle has the opposite spin.
+/// The largest rise of a shape's energy over 30 angles at which it leans. Every second angle has the
+/// opposite spin.
 fn worst(shape: &Shape, friction: f32, spin: f32) -> f64 {
     let rise = |i: i32| rise(shape, i as f32 * 0.05, friction, if i % 2 == 0 { spin } else { -spin });
     (1..=30).map(rise).fold(0.0, f64::max)
@@ -120,8 +121,9 @@ fn what_leans_at_a_wall_gains_no_energy() {
     assert_no_gain(angular().into_iter().chain(capsules()), 0.0, 5.0e-4);
 }
 
-/// The axis of a body that rolls in a corner swings within a step, while the body turns by 1.7 rad about it. With the arms and
-/// the inertia of the start of the step for the spin of its end, thin capsules gained up to 400 times their energy.
+/// The axis of a body that rolls in a corner swings within a step, while the body turns by 1.7 rad about it.
+/// With the arms and the inertia of the start of the step for the spin of its end, thin capsules gained up to
+/// 400 times their energy.
 #[test]
 fn what_spins_in_a_corner_gains_no_energy() {
     assert_no_gain(capsules(), 100.0, 5.0e-4);
@@ -132,15 +134,15 @@ fn what_leans_on_a_rim_gains_no_energy() {
     assert_no_gain(rimmed(), 0.0, 5.0e-4);
 }
 
-/// The rim of a cylinder goes on with its spin within the step. What it overlaps then is pushed out, which lifts a cone without
-/// friction by some tenths of a millimetre: it is not as exact as the others.
+/// The rim of a cylinder goes on with its spin within the step. What it overlaps then is pushed out, which
+/// lifts a cone without friction by some tenths of a millimetre: it is not as exact as the others.
 #[test]
 fn what_spins_on_a_rim_gains_little() {
     assert_no_gain(rimmed(), 100.0, 4.0e-3);
 }
 
-/// A disc that falls flat rests on two points for a moment, and tips over them. Its lowest point was led to the other side then:
-/// it sank by 46 mm.
+/// A disc that falls flat rests on two points for a moment, and tips over them. Its lowest point was led to
+/// the other side then: it sank by 46 mm.
 #[test]
 fn a_disc_that_comes_to_lie_does_not_sink() {
     for i in 0..60 {
@@ -183,8 +185,9 @@ fn deepest_slap(shape: &Shape, lean: f32, drop: f32, way: f32) -> f32 {
     deepest
 }
 
-/// The body's points on the other side are farther away than it falls in the step. They were not in the manifold: the coin came to
-/// be 33 mm deep, the pole 25 mm. The solver takes the turn of 0.15 rad in a step as a straight motion, which leaves 1 cm.
+/// The body's points on the other side are farther away than it falls in the step. They were not in the
+/// manifold: the coin came to be 33 mm deep, the pole 25 mm. The solver takes the turn of 0.15 rad in a step
+/// as a straight motion, which leaves 1 cm.
 #[test]
 fn what_lands_on_an_edge_slaps_down_onto_the_floor() {
     let cuboid = |y: f32, z: f32| Shape::Cuboid(Cuboid { half: Vector { x: HALF, y, z } });

@@ -1,5 +1,5 @@
-//! Bytes of memory per body, collider and contact: printed by `cargo test -- memory --nocapture`, and listed in
-//! docs/hot-loops.md.
+//! Bytes of memory per body, collider and contact: printed by `cargo test -- memory --nocapture`, and listed
+//! in docs/hot-loops.md.
 
 use crate::kernel;
 use core::mem::size_of;

@@ -32,7 +32,8 @@ fn lowest(hull: &Shape, rotation: Rot) -> f32 {
     rotation.rotate(hull.support(down).expect("bounded")).y
 }
 
-/// How much faster a mesh is after 6 m over pieces of ground without friction, and how far it went up or down.
+/// How much faster a mesh is after 6 m over pieces of ground without friction, and how far it
+/// went up or down.
 fn slide(pieces: &[(Shape, Vector)], (hull, mesh): (&Shape, &Shape), speed: f32) -> [f32; 2] {
     let mut sim = Sim::new();
     sim.checked = false;
@@ -53,7 +54,8 @@ fn slide(pieces: &[(Shape, Vector)], (hull, mesh): (&Shape, &Shape), speed: f32)
     [sim.bodies.velocities[id as usize].linear.x / speed - 1.0, bump]
 }
 
-/// A mesh or polyline that is closed slides as the solid does. Planks sank into meshes by their thickness, and cubes stopped on compounds.
+/// A mesh or polyline that is closed slides as the solid does. Planks sank into meshes by their thickness,
+/// and cubes stopped on compounds.
 #[test]
 fn meshes_slide_over_floors_of_pieces() {
     for (floor, pieces) in tiles() {
@@ -77,8 +79,8 @@ fn meshes_slide_over_floors_of_pieces() {
     }
 }
 
-/// Of several tiles under a face that slaps down, only the one that it touched first held it: hulls came 5 cm deep, and meshes
-/// stayed 8 cm deep in meshes.
+/// Of several tiles under a face that slaps down, only the one that it touched first held it: hulls came 5 cm
+/// deep, and meshes stayed 8 cm deep in meshes.
 #[test]
 fn what_tips_over_on_pieces_lies_on_them() {
     let mut dice = Dice::new(11);

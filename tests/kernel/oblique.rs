@@ -64,8 +64,9 @@ fn oblique_elastic_bounces_gain_no_energy() {
 
 /// Both walls stop a body at once, and each brakes it along the other by friction.
 ///
-/// The normal impulse N of each wall and the friction μ N of the other stop 5 m/s: N (1 + μ) = 5 m. Then each wall returns e N,
-/// and the friction of the other, now against the rebound, takes μ e N of it: e (1 - μ) / (1 + μ) of the speed is left.
+/// The normal impulse N of each wall and the friction μ N of the other stop 5 m/s: N (1 + μ) = 5 m. Then each
+/// wall returns e N, and the friction of the other, now against the rebound, takes μ e N of it: e (1 - μ) /
+/// (1 + μ) of the speed is left.
 #[test]
 fn a_corner_returns_the_same_along_both_walls() {
     let (friction, e) = (0.5, 0.8);

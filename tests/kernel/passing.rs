@@ -32,7 +32,8 @@ fn shoot(sim: &mut Sim, id: u32, velocity: Vector) {
     sim.bodies.set_velocity(id, Velocity { linear: velocity, angular });
 }
 
-/// A ball whose speculative margin is small does not feel a surface from afar, whatever that of the surface is.
+/// A ball whose speculative margin is small does not feel a surface from afar, whatever that of
+/// the surface is.
 #[test]
 fn the_margin_of_a_wall_does_not_widen_that_of_a_ball() {
     for margin in [0.0f32, 0.02] {

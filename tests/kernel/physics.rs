@@ -55,7 +55,8 @@ fn towers_stand() {
         }
         sim.steps(600);
         let p = sim.position(top);
-        // Each contact sags by the load above it, and the tower by the square of its height: half as much was seen.
+        // Each contact sags by the load above it, and the tower by the square of its height: half as
+        // much was seen.
         let height_squared = (height * height) as kernel::math::Scalar;
         assert!(
             p.y > height as kernel::math::Scalar - 0.5 - 3.0e-4 * height_squared && p.x.abs() < 0.01,

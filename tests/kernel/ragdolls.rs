@@ -105,7 +105,8 @@ pub fn human(sim: &mut Sim, place: Vector, turn: Rot, losses: Losses) -> (Vec<u3
     (ids, joints)
 }
 
-/// Steps until all sleep. Returns the number of steps, the widest gap, m, and the farthest limit passed, degrees.
+/// Steps until all sleep. Returns the number of steps, the widest gap, m, and the farthest limit
+/// passed, degrees.
 fn settle(sim: &mut Sim, joints: &[u32], steps: usize) -> (usize, f32, f32) {
     let (mut open, mut past) = (0.0f32, 0.0f32);
     for step in 0..steps {
@@ -193,7 +194,8 @@ fn a_heap_of_humans_comes_to_rest() {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// A limb that is stopped before a thin wall stops the whole body with it: its joints do not open by the way that is left.
+/// A limb that is stopped before a thin wall stops the whole body with it: its joints do not open by the way
+/// that is left.
 #[test]
 fn a_human_thrown_at_a_thin_wall_neither_passes_nor_is_torn() {
     let mut failed = Vec::new();
@@ -226,7 +228,8 @@ fn a_human_thrown_at_a_thin_wall_neither_passes_nor_is_torn() {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// Trees of equal shape are solved side by side, four or eight of them: what strikes some must not change others.
+/// Trees of equal shape are solved side by side, four or eight of them: what strikes some must not
+/// change others.
 #[test]
 fn humans_side_by_side_do_not_disturb_each_other() {
     for losses in [Losses::NONE, Losses::USUAL, Losses::FRICTION] {

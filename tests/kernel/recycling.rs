@@ -93,8 +93,8 @@ fn what_makes_a_manifold_wrong_has_it_computed_anew() {
             sim.bodies[id].local_center = Vector::X * 0.02;
             sim.bodies.teleport(id, frame);
         }),
-        ("kind", |sim, [_, id]| sim.link().retype(id, BodyKind::Kinematic)),
-        ("kind of the support", |sim, [floor, _]| sim.link().retype(floor, BodyKind::Kinematic)),
+        ("kind", |sim, [_, id]| sim.contact_manager().retype(id, BodyKind::Kinematic)),
+        ("kind of the support", |sim, [floor, _]| sim.contact_manager().retype(floor, BodyKind::Kinematic)),
     ];
     for (what, change) in changes {
         assert_eq!(after(change), Outcome::Recomputed, "{what}");
@@ -108,8 +108,8 @@ fn what_makes_a_manifold_wrong_has_it_computed_anew() {
 #[test]
 fn a_pair_with_a_new_owner_of_an_id_begins_anew() {
     let (mut sim, [floor, id]) = at_rest();
-    sim.link().destroy_of_collider(id);
-    let again = sim.link().create(floor, id);
+    sim.contact_manager().destroy_of_collider(id);
+    let again = sim.contact_manager().create(floor, id);
     assert_eq!(sim.contacts.get(again).manifold.count, 0, "nothing is left of the last owner");
     assert_eq!(sim.look(floor, id).0, Outcome::Recomputed);
 }
@@ -126,7 +126,7 @@ fn a_new_surface_takes_effect_on_a_recycled_contact() {
     for body in [floor, id] {
         let mut material = sim.colliders[body].def.material;
         material.friction.coefficient = 0.0;
-        sim.link().set_material(body, material);
+        sim.contact_manager().set_material(body, material);
     }
     assert_eq!(sim.look(floor, id).0, Outcome::Recycled);
     sim.step();
@@ -144,7 +144,8 @@ fn lowest(sim: &Sim, id: u32, half: f32) -> f32 {
 
 #[test]
 fn what_lands_sinks_no_deeper_for_recycling() {
-    // From heights that differ by less than one step's motion, and at all angles: the deepest and the mean penetration.
+    // From heights that differ by less than one step's motion, and at all angles: the deepest and the
+    // mean penetration.
     let drops = |recycle: bool, tilted: bool| {
         let (mut deepest, mut sum) = (0.0f32, 0.0f32);
         for k in 0..100 {
@@ -174,8 +175,8 @@ fn what_lands_sinks_no_deeper_for_recycling() {
     }
 }
 
-/// Compares the contact points of two bodies in every step with those of a recomputed manifold. Returns how often a
-/// contact without points was recycled, and how often it was recomputed.
+/// Compares the contact points of two bodies in every step with those of a recomputed manifold. Returns how
+/// often a contact without points was recycled, and how often it was recomputed.
 fn watch(mut sim: Sim, [a, b]: [u32; 2], steps: usize, what: &str) -> [usize; 2] {
     let mut counts = [0; 2];
     let mut was_left_alone = false;
@@ -236,7 +237,8 @@ fn what_is_apart_is_not_looked_at_and_yet_found_in_time() {
 
 #[test]
 fn what_turns_as_it_falls_far_from_the_middle_of_a_large_floor_is_found_in_time() {
-    // Its motion is a rotation about the floor's centre of mass: relative to the body, the floor only rotates.
+    // Its motion is a rotation about the floor's centre of mass: relative to the body, the floor
+    // only rotates.
     for below in [false, true] {
         for shape in [Shape::Cuboid(Cuboid { half: Vector::ONE * 0.5 }), Shape::Ball(Ball { radius: 0.5 })] {
             let mut sim = Sim::new();
@@ -268,7 +270,8 @@ fn what_rests_is_not_looked_at() {
     assert_ne!(until(&sim), before, "what slides is looked at");
 }
 
-/// Separations that were followed through steps without a look differ from those of a look by the square of small turns.
+/// Separations that were followed through steps without a look differ from those of a look by the square
+/// of small turns.
 #[test]
 fn separations_without_a_look_are_those_of_a_look() {
     let mut sim = Sim::new();

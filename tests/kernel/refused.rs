@@ -1,4 +1,5 @@
-//! Pairs that the embedder refuses, by layers, when they are found, or when they touch, stop nothing, however fast it is.
+//! Pairs that the embedder refuses, by layers, when they are found, or when they touch, stop nothing,
+//! however fast it is.
 
 use super::dim::sized;
 use super::sim::Sim;

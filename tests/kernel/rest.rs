@@ -22,8 +22,8 @@ fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
     list
 }
 
-/// A pile in a box without a lid, `wide` metres wide, from layers of `wide` bodies along each axis. Seeds differ in the
-/// first poses.
+/// A pile in a box without a lid, `wide` metres wide, from layers of `wide` bodies along each axis. Seeds
+/// differ in the first poses.
 fn pile(shapes: &[Shape], wide: usize, count: usize, seed: u64, unit: f32) -> Sim {
     let mut sim = Sim::new();
     sim.unit = unit;
@@ -103,7 +103,8 @@ fn late(shapes: &[Shape], wide: usize, count: usize, seeds: u64, limit: usize) -
     (0..seeds).filter_map(late).collect()
 }
 
-/// Prints for docs/design/solver.md when piles of many seeds fall asleep, with infinity for those that take half a minute.
+/// Prints for docs/design/solver.md when piles of many seeds fall asleep, with infinity for those that take
+/// half a minute.
 pub fn survey_of_piles() {
     for (name, shapes) in shapes() {
         for ((wide, count, ..), seeds) in PILES.into_iter().zip([40, 20]) {
@@ -120,8 +121,8 @@ pub fn survey_of_piles() {
     }
 }
 
-/// Of the seeds of a pile, one may take longer, but none twice as long: now and then a body swings or shakes for some seconds
-/// between others.
+/// Of the seeds of a pile, one may take longer, but none twice as long: now and then a body swings or shakes
+/// for some seconds between others.
 #[test]
 fn piles_of_each_shape_fall_asleep() {
     for (name, shapes) in shapes() {

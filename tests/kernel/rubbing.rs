@@ -44,9 +44,10 @@ fn height_after_ten_turns(clock: (f32, u32)) -> Option<f32> {
     None
 }
 
-/// A ball that meets the next facet at an angle δ keeps cos δ of its speed. Kinks of π / 2000 take δ of the
-/// energy a radian, on average two thirds of 26 δ = 4 % in ten turns through 150°. A step has one normal, though,
-/// so the ball meets kinks as wide as a step: it loses more, and less in shorter steps. It must never gain.
+/// A ball that meets the next facet at an angle δ keeps cos δ of its speed. Kinks of π / 2000 take δ of
+/// the energy a radian, on average two thirds of 26 δ = 4 % in ten turns through 150°. A step has one
+/// normal, though, so the ball meets kinks as wide as a step: it loses more, and less in shorter steps. It
+/// must never gain.
 #[test]
 fn a_ball_in_a_half_pipe_without_friction_loses_little_height_and_gains_none() {
     let mut bad = Vec::new();

@@ -126,7 +126,8 @@ fn a_disc_that_slides_and_spins_stops_by_the_closed_form_for_even_pressure() {
                 let mean = |of: fn(&Stop) -> f64| seen.iter().map(of).sum::<f64>() / seen.len() as f64;
                 let got = Stop { slide: mean(|s| s.slide), spin: mean(|s| s.spin), way: mean(|s| s.way) };
                 let shares = [got.slide / want.slide, got.spin / want.spin, got.way / want.way];
-                // Of several manifolds each has a friction centre of its own, with a budget for what spins about it.
+                // Of several manifolds each has a friction centre of its own, with a budget for what
+                // spins about it.
                 let most = if floor == "one box" { 0.1 } else { 0.15 };
                 if shares.iter().any(|share| (share - 1.0).abs() > most) {
                     bad.push(format!("{v} m/s, {w} rad/s on {floor}, {clock:?}: {got:?}, not {want:?}"));
@@ -206,8 +207,8 @@ fn a_cone_that_spins_on_its_tip_stays_on_the_floor() {
             for (tilt, friction) in [(0.0, 0.4), (0.1, 0.4), (0.3, 0.4), (0.0, 0.0), (0.1, 0.0), (0.3, 0.0)] {
                 let mut sim = on_floor(floor, clock, friction, 0.0).expect("it is laid");
                 let [low, high, change] = spun_on_tip(&mut sim, tilt, friction);
-                // What leaves the floor for a step falls by g dt² / 2: by 5.6 mm at 30 Hz. The softness of the floor takes up to
-                // half of a per cent of the energy there, and half of that at 60 Hz.
+                // What leaves the floor for a step falls by g dt² / 2: by 5.6 mm at 30 Hz. The softness of
+                // the floor takes up to half of a per cent of the energy there, and half of that at 60 Hz.
                 let is_slow = clock.0 < 60.0;
                 let (most, lost) = if is_slow { (0.008, 0.007) } else { (0.005, 0.003) };
                 if low < -0.005 || high > most || friction == 0.0 && change > lost {

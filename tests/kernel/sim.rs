@@ -8,7 +8,9 @@ use super::units;
 use crate::kernel;
 use kernel::bvh::{FoundPairs, Mover, Movers, PairMask, ProxyId, TreeKind, Trees};
 use kernel::ccd::{SweepBuffers, SweepInput};
-use kernel::contact::{Contact, ContactFlags, ContactTable, Frozen, Link, NarrowPhaseInput, WorkerBuffers};
+use kernel::contact::{
+    Contact, ContactFlags, ContactManager, ContactTable, Frozen, NarrowPhaseInput, WorkerBuffers,
+};
 use kernel::data::BitSet;
 use kernel::graph::{ColorGraph, Islands, SleepScan};
 use kernel::math::{AxisLocks, InvInertia, Pose, Rot, Vector, WorldPose, WorldVector};
@@ -75,7 +77,8 @@ pub struct Sim {
     pub colors: ColorGraph,
     pub islands: Islands,
     pub gravity: Vector,
-    /// The length unit. Shapes, places, joints and, until the first step, velocities and gravity are given in such units.
+    /// The length unit. Shapes, places, joints and, until the first step, velocities and gravity are given
+    /// in such units.
     pub unit: f32,
     /// The density of bodies that are added.
     pub density: f32,
@@ -121,7 +124,8 @@ pub struct Sim {
 
 impl Sim {
     pub fn new() -> Self {
-        // Colours are shared from the first constraint on, although that does not pay: the tests compare numbers of workers.
+        // Colours are shared from the first constraint on, although that does not pay: the tests compare
+        // numbers of workers.
         let mut solver = Solver::default();
         solver.share_from(1);
         Self {
@@ -176,8 +180,8 @@ impl Sim {
         self.pool = ThreadPool::new(workers);
     }
 
-    pub fn link(&mut self) -> Link<'_> {
-        Link {
+    pub fn contact_manager(&mut self) -> ContactManager<'_> {
+        ContactManager {
             bodies: &mut self.bodies,
             colliders: &mut self.colliders,
             contacts: &mut self.contacts,
@@ -218,7 +222,7 @@ impl Sim {
         let id = self.bodies.add(kind, mass.center, pose);
         self.bodies[id].rest_speed = RestSpeed { linear: 0.15 * self.unit, angular: 0.15 };
         put(&mut self.frames, id, pose);
-        self.link().enter(id);
+        self.contact_manager().enter(id);
         let inverse = if mass.mass > 0.0 { 1.0 / mass.mass } else { 0.0 };
         put(&mut self.masses, id, (inverse, inverse_inertia(&mass)));
         put(&mut self.locks, id, AxisLocks::NONE);
@@ -240,8 +244,8 @@ impl Sim {
         id
     }
 
-    /// Adds a body whose colliders are pieces at places. Each piece after the first takes the id of a body without colliders,
-    /// so that ids of bodies stay those of their colliders.
+    /// Adds a body whose colliders are pieces at places. Each piece after the first takes the id of a body
+    /// without colliders, so that ids of bodies stay those of their colliders.
     pub fn add_children(&mut self, kind: BodyKind, pieces: &[(Shape, Vector)], friction: f32) -> u32 {
         let (first, place) = &pieces[0];
         let id = self.add_with(kind, first.clone(), *place, Rot::IDENTITY, friction, 0.0);
@@ -249,7 +253,7 @@ impl Sim {
         for (shape, at) in &pieces[1..] {
             let unused = self.bodies.add(BodyKind::Static, Vector::ZERO, pose);
             put(&mut self.frames, unused, pose);
-            self.link().enter(unused);
+            self.contact_manager().enter(unused);
             let mass = self.masses[id as usize];
             put(&mut self.masses, unused, mass);
             put(&mut self.locks, unused, AxisLocks::NONE);
@@ -292,14 +296,14 @@ impl Sim {
 
     /// Removes a body with its collider. Its id may be reused at once.
     pub fn remove(&mut self, id: u32) {
-        self.link().destroy_of_collider(id);
+        self.contact_manager().destroy_of_collider(id);
         let (kind, proxy) = self.proxies[id as usize];
         self.trees[kind].remove(proxy);
         let others: Vec<Mover> = self.movers.list().iter().filter(|mover| mover.id != id).copied().collect();
         self.movers.clear();
         others.into_iter().for_each(|mover| _ = self.movers.insert(mover));
         self.colliders.remove(id, &mut self.bodies);
-        self.link().leave(id);
+        self.contact_manager().leave(id);
         self.recycle_ids();
     }
 
@@ -417,7 +421,7 @@ impl Sim {
                 || self.contacts.is_superfluous([a, b], &self.colliders, &self.bodies);
             let [first, second] = [a, b].map(|id| &self.colliders[id].def);
             if !is_refused && first.body != second.body && first.layers.interacts_with(second.layers) {
-                self.link().create(a, b);
+                self.contact_manager().create(a, b);
             }
         }
         self.narrow();
@@ -425,7 +429,7 @@ impl Sim {
         let input = RowInput { contacts: &self.contacts, bodies: &self.bodies, colliders: &self.colliders };
         self.pool.wake();
         if self.builds_rows {
-            // SAFETY: contacts, colours and kinds of bodies are changed through one link.
+            // SAFETY: contacts, colours and kinds of bodies are changed through one contact manager.
             unsafe { self.solver.build_rows(&input, &self.colors, &params, &self.pool) };
             self.shared = self.solver.shared_stages();
         }
@@ -451,7 +455,7 @@ impl Sim {
             self.sleep();
         }
         if self.checked && cfg!(debug_assertions) {
-            self.link().validate();
+            self.contact_manager().validate();
         }
     }
 
@@ -512,7 +516,7 @@ impl Sim {
             }
         }
         let changed = core::mem::take(&mut self.changed);
-        self.link().apply(&changed, |_, _, _| {});
+        self.contact_manager().apply(&changed, |_, _, _| {});
         self.changed = changed;
     }
 
@@ -543,7 +547,7 @@ impl Sim {
             self.islands.split(*island);
         }
         for island in self.scan.sleepers().to_vec() {
-            self.link().sleep_island(island);
+            self.contact_manager().sleep_island(island);
         }
     }
 

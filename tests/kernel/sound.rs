@@ -1,4 +1,5 @@
-//! Mistakes of callers never make two threads write the same data: they panic in debug builds, or have no effect.
+//! Mistakes of callers never make two threads write the same data: they panic in debug builds, or
+//! have no effect.
 
 use super::dim::inverse_inertia;
 use super::sim::Sim;

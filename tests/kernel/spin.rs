@@ -375,7 +375,8 @@ fn crossed_rods_that_are_struck_together_do_not_pass() {
 
 #[test]
 fn the_inertia_of_a_thin_splinter_has_an_inverse() {
-    // A box of 32 × 0.5 × 0.5 mm and one of a micrometre: the determinants are 1e-37 and smaller than any `f32`.
+    // A box of 32 × 0.5 × 0.5 mm and one of a micrometre: the determinants are 1e-37 and smaller
+    // than any `f32`.
     for size in [[0.032f32, 0.0005, 0.0005], [1.0e-6, 1.0e-6, 2.0e-6]] {
         let half = Vector::from_array(size) * 0.5;
         let inertia = Shape::Cuboid(Cuboid { half }).mass_properties(1.0).inertia;
@@ -402,8 +403,8 @@ fn bars(list: [([f32; 3], [f32; 3]); 3]) -> Shape {
     Shape::compound(list.map(bar).into()).expect("a compound")
 }
 
-/// The least and the greatest share of its energy that a body has in 15 s on ice, after it was let down and given a spin about
-/// the vertical.
+/// The least and the greatest share of its energy that a body has in 15 s on ice, after it was let down and
+/// given a spin about the vertical.
 fn energy_on_ice(shape: &Shape, clock: (f32, u32), speed: f32) -> [f64; 2] {
     let mut sim = Sim::new();
     (sim.dt, sim.substeps) = clock;
@@ -423,7 +424,8 @@ fn energy_on_ice(shape: &Shape, clock: (f32, u32), speed: f32) -> [f64; 2] {
     range
 }
 
-/// The floor pushed a body that spins askew as if it had not turned since the step began: in 15 s it gained a quarter of its spin.
+/// The floor pushed a body that spins askew as if it had not turned since the step began: in 15 s it gained a
+/// quarter of its spin.
 #[test]
 fn a_skew_body_that_spins_on_ice_keeps_its_energy() {
     let shape = bars([
@@ -437,8 +439,8 @@ fn a_skew_body_that_spins_on_ice_keeps_its_energy() {
     }
 }
 
-/// It stands on an edge and the corner of another bar. Of the edge only one end was a point of contact, in turns, while points
-/// in the air had the other places: it gained up to 3.5 times its energy.
+/// It stands on an edge and the corner of another bar. Of the edge only one end was a point of contact, in
+/// turns, while points in the air had the other places: it gained up to 3.5 times its energy.
 #[test]
 fn a_body_that_spins_on_an_edge_and_a_corner_gains_no_energy() {
     let shape = bars([

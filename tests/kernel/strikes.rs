@@ -201,8 +201,8 @@ fn a_rack_keeps_momentum_energy_and_symmetry() {
     assert!(bad.is_empty(), "{bad:#?}");
 }
 
-/// Impulses of both walls cancel each other for the most part. If the walls returned different shares of them, the
-/// ball would leave at many times its speed.
+/// Impulses of both walls cancel each other for the most part. If the walls returned different shares of
+/// them, the ball would leave at many times its speed.
 #[test]
 fn a_ball_in_a_wedge_of_two_restitutions_gains_no_energy() {
     for (clock, phase) in CLOCKS.into_iter().flat_map(|clock| phases().map(move |phase| (clock, phase))) {

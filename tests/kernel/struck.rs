@@ -73,7 +73,8 @@ fn a_flipper_throws_a_ball_at_the_speed_of_its_surface() {
                 continue;
             }
             for radius in [0.1, 0.2] {
-                // The prediction of the narrow phase misses a small ball in some phases: see docs/design/limits.md.
+                // The prediction of the narrow phase misses a small ball in some phases: see
+                // docs/design/limits.md.
                 if rate / clock.0 > 0.9 && radius < 0.2 {
                     continue;
                 }
@@ -122,8 +123,8 @@ fn any_solid(dice: &mut Dice) -> Shape {
 /// Errors of momentum, of angular momentum and of energy of a body that strikes another off its centre, as
 /// shares.
 ///
-/// `None` if they miss. Angular momentum is about the common centre of mass, and its error a share of half of the
-/// blow's momentum times one metre.
+/// `None` if they miss. Angular momentum is about the common centre of mass, and its error a share of half of
+/// the blow's momentum times one metre.
 fn struck_pair(seed: u64, clock: (f32, u32)) -> Option<[f64; 3]> {
     let mut dice = Dice::new(seed);
     let mut sim = clocked(clock);

@@ -4,7 +4,9 @@ use super::dim::{any_rotation, riders, sized, terrain};
 use super::extreme::Dice;
 use super::sim::{Outcome, Sim};
 use crate::kernel;
-use kernel::manifold::{CompositeBuffers, FeatureCache, LocalManifold, Look, collide, collide_composite};
+use kernel::manifold::{
+    CompositeBuffers, FeatureCache, LocalManifold, ManifoldQuery, collide, collide_composite,
+};
 use kernel::math::{Pose, Rot, Vector};
 use kernel::shape::{Ball, Cuboid, Part, Shape};
 use kernel::table::BodyKind;
@@ -38,8 +40,8 @@ fn corner() -> Shape {
 
 fn manifolds(a: &Shape, b: &Shape, pose: &Pose, prediction: f32) -> (Vec<LocalManifold>, f32) {
     let mut all = Vec::new();
-    let look = Look::up_to(prediction);
-    let gap = collide_composite(a, b, pose, look, &mut CompositeBuffers::default(), &mut all);
+    let query = ManifoldQuery::up_to(prediction);
+    let gap = collide_composite(a, b, pose, query, &mut CompositeBuffers::default(), &mut all);
     (all, gap)
 }
 

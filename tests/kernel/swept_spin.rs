@@ -21,8 +21,8 @@ fn rods(length: f32) -> [Shape; 2] {
     ]
 }
 
-/// Rotates a rod by half a turn at a speed, from a phase, beside a ball with the mass of one of some radius. Returns
-/// whether the ball moved.
+/// Rotates a rod by half a turn at a speed, from a phase, beside a ball with the mass of one of some radius.
+/// Returns whether the ball moved.
 fn moves(rod: &Shape, speed: f32, phase: f32, at: Vector, weight: f32) -> bool {
     let mut sim = Sim::new();
     sim.gravity = Vector::ZERO;

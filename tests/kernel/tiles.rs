@@ -94,15 +94,16 @@ fn boxes_driven_over_tiles_reach_the_speed_of_the_closed_form() {
     assert!(errors.iter().all(|(_, error)| *error < 0.005), "{errors:?}");
 }
 
-/// They start at 16 m/s, and lose some friction at each seam: the load that comes to a new tile takes a substep.
+/// They start at 16 m/s, and lose some friction at each seam: the load that comes to a new tile
+/// takes a substep.
 #[test]
 fn boxes_braked_by_tiles_end_at_the_speed_of_the_closed_form() {
     let errors = errors(Drive::Brake);
     assert!(errors.iter().all(|(_, error)| *error < 0.01), "{errors:?}");
 }
 
-/// A plank caught on the side of a tile whose upper corner was level with it. Of round bodies that lay on a tile's plane and others
-/// that were tilted by rounding against it, one tile alone held.
+/// A plank caught on the side of a tile whose upper corner was level with it. Of round bodies that lay on a
+/// tile's plane and others that were tilted by rounding against it, one tile alone held.
 #[test]
 fn small_tiles_brake_by_friction_alone() {
     let mut shapes = vec![

@@ -155,7 +155,8 @@ fn fall(seed: u64, shape: &Shape, points: &[Vector], is_compound: bool) -> Fall 
     seen
 }
 
-/// In three falls of 360 in 2D, and in one in 3D, something comes deeper than a centimetre: 13 mm. None is held for five steps.
+/// In three falls of 360 in 2D, and in one in 3D, something comes deeper than a centimetre: 13 mm. None is
+/// held for five steps.
 #[test]
 fn what_tumbles_through_levels_of_blocks_stays_out_of_them() {
     let (mut deep, mut seen) = (0, Fall::default());

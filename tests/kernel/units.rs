@@ -1,8 +1,9 @@
-//! Scenes in worlds of any length unit: what is a metre in one is a thousandth or a thousand units in another.
+//! Scenes in worlds of any length unit: what is a metre in one is a thousandth or a thousand
+//! units in another.
 //!
-//! By a power of two all numbers are scaled without rounding, so a scene ends with the same bits, but for numbers whose products
-//! underflow: those of rounding, where 0 is meant. By other factors rounding differs, and the proofs of seams, rest, walls and
-//! blows must hold as they do in metres.
+//! By a power of two all numbers are scaled without rounding, so a scene ends with the same bits, but for
+//! numbers whose products underflow: those of rounding, where 0 is meant. By other factors rounding differs,
+//! and the proofs of seams, rest, walls and blows must hold as they do in metres.
 
 use super::dim::{scaled_curved, scaled_hull};
 use super::golden;
@@ -120,7 +121,8 @@ pub fn scaled_coupling(def: &CouplingDef, unit: f32) -> CouplingDef {
 #[test]
 fn scenes_have_the_same_bits_in_length_units_of_powers_of_two() {
     let mut bad = golden::differing(&BINARY);
-    // A number of rounding whose square underflows is 0 in one unit, and not in another. In 3D the wall shakes from such numbers.
+    // A number of rounding whose square underflows is 0 in one unit, and not in another. In 3D the wall
+    // shakes from such numbers.
     bad.retain(|(name, _, off)| !(*off < 1.0e-9 || DIM == 3 && *name == "wall"));
     assert!(bad.is_empty(), "{bad:?}");
 }

@@ -80,7 +80,8 @@ fn boxes_that_land_flat_do_not_all_jump_to_one_side() {
     assert!(mean.x.abs().max(across(mean).abs()) < 0.2 * most, "on average they jumped by {mean:?}");
 }
 
-/// Displacement of the top of a pyramid in the 50 s after 10 s of settling, for a tower and pyramids of several sizes.
+/// Displacement of the top of a pyramid in the 50 s after 10 s of settling, for a tower and pyramids of
+/// several sizes.
 pub fn unrest_of_tops() {
     for base in [16, 32, 60, 62, 64, 66] {
         let mut sim = Sim::new();

@@ -1,4 +1,5 @@
-//! Characters: bodies that cannot turn, and that the app drives into a wall of pieces while they fall along it or jump.
+//! Characters: bodies that cannot turn, and that the app drives into a wall of pieces while they fall
+//! along it or jump.
 
 use super::dim::floors::blocks;
 use super::dim::{more_riders, sized, tiles};
@@ -111,8 +112,8 @@ fn assert_free(unit: f32, drives: &[(f32, f32)]) {
     assert!(bad.is_empty(), "{}: {bad:#?}", bad.len());
 }
 
-/// The velocity into the wall counted as motion: the top of the next piece, met inside of the wall, was taken for ground. A fall of 20 m
-/// took up to 6.5 times as long, and a jump ended at a tenth of its height.
+/// The velocity into the wall counted as motion: the top of the next piece, met inside of the wall, was taken
+/// for ground. A fall of 20 m took up to 6.5 times as long, and a jump ended at a tenth of its height.
 #[test]
 fn characters_fall_and_jump_along_walls_of_pieces_as_beside_them() {
     assert_free(1.0, &[(1.0, 60.0), (3.0, 30.0), (5.0, 64.0), (10.0, 60.0), (10.0, 144.0)]);

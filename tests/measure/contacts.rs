@@ -2,7 +2,7 @@
 
 use super::pairs::{PREDICTION, Pair};
 use crate::kernel;
-use kernel::contact::{ContactTable, Link, NarrowPhaseInput, WorkerBuffers};
+use kernel::contact::{ContactManager, ContactTable, NarrowPhaseInput, WorkerBuffers};
 use kernel::data::BitSet;
 use kernel::graph::ColorGraph;
 use kernel::math::{Pose, Vector, WorldPose};
@@ -36,14 +36,14 @@ impl Contacts {
                 let id = colliders.add(def, place, &mut bodies);
                 colliders.refresh(id, &bodies, Fattening { margin: 0.1, dt: 1.0 / 60.0 });
             }
-            let mut link = Link {
+            let mut manager = ContactManager {
                 bodies: &mut bodies,
                 colliders: &mut colliders,
                 contacts: &mut contacts,
                 colors: &mut colors,
                 islands: None,
             };
-            link.create(2 * i as u32, 2 * i as u32 + 1);
+            manager.create(2 * i as u32, 2 * i as u32 + 1);
         }
         let (pool, buffers) = (ThreadPool::default(), Vec::new());
         Self { bodies, colliders, contacts, pool, buffers, changed: BitSet::default() }

@@ -28,8 +28,8 @@ pub fn normal_of(shape: &Shape, dice: &mut Dice) -> Vector {
     }
 }
 
-/// The rotation that maps the second direction to the opposite of the first, with a random rotation about it if
-/// `twisted`.
+/// The rotation that maps the second direction to the opposite of the first, with a random rotation about it
+/// if `twisted`.
 pub fn facing([a, b]: [Vector; 2], twisted: bool, dice: &mut Dice) -> Rot {
     let (a, b) = (a * (1.0 / a.length()), b * (-1.0 / b.length()));
     // Half of a rotation is the mean of the unit quaternions of the identity and the full rotation.

@@ -1,9 +1,9 @@
-//! Prints nanoseconds per manifold and per contact: `cargo bench -p avian_kernel3d`, with part of a pair's name behind
-//! `--` only for such pairs.
+//! Prints nanoseconds per manifold and per contact: `cargo bench -p avian_kernel3d`, with part of a pair's
+//! name behind `--` only for such pairs.
 //!
-//! A pair is *fresh* without state from earlier steps, *cached* if it moved slightly since its last manifold. Each run
-//! processes a thousand pairs with different shapes and poses, so that branches are not predictable. Figures are those
-//! of the fastest of many runs, since other load only adds time.
+//! A pair is *fresh* without state from earlier steps, *cached* if it moved slightly since its last manifold.
+//! Each run processes a thousand pairs with different shapes and poses, so that branches are not predictable.
+//! Figures are those of the fastest of many runs, since other load only adds time.
 
 #[path = "mod.rs"]
 mod measure;

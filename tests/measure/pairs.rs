@@ -75,8 +75,8 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Places the second shape so that the surfaces overlap by up to 1 cm, or are apart by up to the prediction
-    /// distance.
+    /// Places the second shape so that the surfaces overlap by up to 1 cm, or are apart by up to the
+    /// prediction distance.
     pub fn new(shapes: [Shape; 2], lie: Lie, dice: &mut Dice) -> Self {
         let (rotation, direction, aside) = match lie {
             Lie::Loose => (dim::rotation(dice), dice.direction(), Vector::ZERO),

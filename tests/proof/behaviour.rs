@@ -254,7 +254,8 @@ fn issue_a_disabled_body_stayed_behind_the_body_that_carries_it() {
         let shown = lab.get::<Transform>(item);
         assert_eq!(shown, Transform::from_xyz(1.0, 0.0, 0.0), "step {step}");
     }
-    // The box of its collider is that of its last place but one: colliders of disabled bodies are read before a step.
+    // The box of its collider is that of its last place but one: colliders of disabled bodies are read
+    // before a step.
     let off = lab.get::<ColliderAabb>(item).center() - lab.at(item);
     assert!(off.length() < 0.1, "{off}");
     // Its own pose wins, and it is carried on from there.

@@ -1,4 +1,5 @@
-//! The same bits, with any other entities in the app and any number of threads: row 22 of the required physics.
+//! The same bits, with any other entities in the app and any number of threads: row 22 of the
+//! required physics.
 
 use avian::{
     dynamics::solver::WorkerCount,

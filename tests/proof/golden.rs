@@ -1,9 +1,10 @@
 //! Golden hashes: final states of whole scenes, bit by bit, with any number of workers and any width of rows.
 //!
-//! The expected hashes are in `golden2.rs` and `golden3.rs`. If a change of the simulation is intended, the table
-//! printed by the failing test replaces the old one, and the commit says why. The kernel's own golden hashes
-//! (`tests/kernel/golden.rs`) hold on every machine, and as far as is known those of native shapes here. Parry's
-//! results may differ between instruction sets, so scenes with its shapes are listed separately.
+//! The expected hashes are in `golden2.rs` and `golden3.rs`. If a change of the simulation is intended,
+//! the table printed by the failing test replaces the old one, and the commit says why. The kernel's own
+//! golden hashes (`tests/kernel/golden.rs`) hold on every machine, and as far as is known those of
+//! native shapes here. Parry's results may differ between instruction sets, so scenes with its shapes
+//! are listed separately.
 
 use avian::{
     collision::CollisionDiagnostics,
@@ -179,8 +180,8 @@ fn settings(lab: &mut Lab) {
     lab.steps(120);
 }
 
-/// FNV-1a of 64 bits (Fowler, Noll and Vo) over positions, rotations and velocities of all moving bodies, in the order
-/// of spawning.
+/// FNV-1a of 64 bits (Fowler, Noll and Vo) over positions, rotations and velocities of all moving bodies, in
+/// the order of spawning.
 fn hash(lab: &mut Lab) -> u64 {
     let world = lab.app.world_mut();
     let mut query = world.query::<(Entity, &RigidBody)>();

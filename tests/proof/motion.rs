@@ -180,7 +180,8 @@ fn balls_and_cylinders_roll_as_their_inertia_says() {
 
 #[test]
 fn a_sliding_ball_comes_to_roll_in_time() {
-    // With k = I / m r²: it slips for t = k v0 / ((1 + k) μ g), 2/7 v0 / μ g for a sphere, then rolls at v0 / (1 + k).
+    // With k = I / m r²: it slips for t = k v0 / ((1 + k) μ g), 2/7 v0 / μ g for a sphere, then rolls at
+    // v0 / (1 + k).
     let (mu, v0, k) = (0.2, 7.0, dim::BALL_INERTIA);
     let mut lab = Lab::new();
     lab.surfaces(mu, 0.0);

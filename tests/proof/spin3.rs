@@ -77,7 +77,8 @@ fn free_spin_keeps_its_direction_and_gains_nothing() {
     let cases = [
         ([0.4, 1.0, 2.0], Vector::new(0.01, 5.0, 0.0), 0.9),
         ([1.0, 0.2, 1.0], Vector::new(1.0, 4.0, 0.0), 0.98),
-        // So thin and fast that an explicit step would diverge. The implicit step damps what it cannot resolve.
+        // So thin and fast that an explicit step would diverge. The implicit step damps what it
+        // cannot resolve.
         ([0.02, 2.0, 0.02], Vector::new(100.0, 3.0, 0.0), 0.7),
         ([0.02, 2.0, 0.02], Vector::new(70.0, 70.0, 1.0), 0.0),
     ];

@@ -6,7 +6,8 @@ use scenes::{DT, SUBSTEPS, headless_app, pyramid, scene::at, towers};
 
 use super::{dim, world::Lab};
 
-/// Displacement of the top of a pyramid in `seconds` after six seconds of settling, and how far it sagged before.
+/// Displacement of the top of a pyramid in `seconds` after six seconds of settling, and how far it
+/// sagged before.
 fn unrest_of_pyramid(base: u32, seconds: f64) -> (f32, f32) {
     let mut lab = Lab { app: headless_app(DT, SUBSTEPS), dt: DT };
     let boxes = pyramid::large(lab.app.world_mut(), base);

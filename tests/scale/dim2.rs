@@ -26,7 +26,8 @@ pub fn lopsided() -> Collider {
     Collider::triangle(v(-0.4, -0.3), v(0.9, -0.1), v(0.2, 0.7))
 }
 
-/// One collider of each kind, none of them symmetric where it can be without, and whether an uneven scale is exact.
+/// One collider of each kind, none of them symmetric where it can be without, and whether an uneven
+/// scale is exact.
 pub fn shapes() -> Vec<(&'static str, Collider, bool)> {
     let [a, b, c] = [v(-0.4, -0.3), v(0.9, -0.1), v(0.2, 0.7)];
     let hull = vec![v(-0.2, -0.4), v(1.3, 0.2), v(1.1, 0.9), v(0.1, 1.2), v(-0.5, 0.3)];

@@ -27,7 +27,8 @@ pub fn lopsided() -> Collider {
     Collider::convex_hull(corners).expect("a hull")
 }
 
-/// One collider of each kind, none of them symmetric where it can be without, and whether an uneven scale is exact.
+/// One collider of each kind, none of them symmetric where it can be without, and whether an uneven
+/// scale is exact.
 pub fn shapes() -> Vec<(&'static str, Collider, bool)> {
     let [a, b, c, d] = [v(-0.4, -0.3, -0.2), v(0.9, -0.1, 0.0), v(0.2, 0.7, -0.1), v(0.1, 0.2, 1.1)];
     let part = |i: u32, factor: u32| (i * factor % 23) as Scalar / 11.0 - 0.8;

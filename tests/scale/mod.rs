@@ -354,7 +354,8 @@ fn moving_and_turning_bodies_and_parents_do_not_rebuild_colliders() {
     let motion = (LinearVelocity(Vector::X), Transform::from_scale(Vec3::splat(1.3)).with_rotation(spin));
     let body = app.world_mut().spawn((RigidBody::Dynamic, lopsided(), motion)).id();
     let part = app.world_mut().spawn((Collider::capsule(0.5, 1.0), at(Vector::X), ChildOf(body))).id();
-    // A parent that the app turns, with an uneven scale above: noise in the scale of what is turned by quarters.
+    // A parent that the app turns, with an uneven scale above: noise in the scale of what is
+    // turned by quarters.
     let root = app.world_mut().spawn(scaled(uneven() / 3.0)).id();
     let quarter = Transform::from_rotation(Quat::from_rotation_z(core::f32::consts::FRAC_PI_2));
     let held = app.world_mut().spawn((Collider::capsule(0.5, 1.0), quarter, ChildOf(root))).id();
@@ -417,7 +418,8 @@ fn factor() -> impl Strategy<Value = f32> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Even scales above and any scale below make no shear: the collider is the shape in its `GlobalTransform`.
+    /// Even scales above and any scale below make no shear: the collider is the shape in its
+    /// `GlobalTransform`.
     #[test]
     fn a_nested_collider_is_its_shape_in_the_global_transform(
         above in prop::collection::vec(transform(factor().prop_map(|f| if DIM == 2 { Vec3::new(f, f, f.abs()) } else { Vec3::splat(f) })), 0..4),

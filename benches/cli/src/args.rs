@@ -127,8 +127,8 @@ fn list<D: Scenes>() {
     }
 }
 
-/// Builds missing binaries and runs the plan; with `split` a second time with timed stages, for scenes of families
-/// speed and idle.
+/// Builds missing binaries and runs the plan; with `split` a second time with timed stages, for scenes of
+/// families speed and idle.
 fn measure(engines: &Engines, plan: &Plan, split: bool) -> Result<Results, String> {
     if cfg!(debug_assertions) {
         return Err("only what is built with --release is worth measuring".to_owned());

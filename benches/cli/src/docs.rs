@@ -73,8 +73,8 @@ fn columns(cells: &[&Cell]) -> Vec<&'static str> {
     ENGINES.into_iter().filter(|engine| cells.iter().any(|cell| cell.first.engine == *engine)).collect()
 }
 
-/// A table with a row per scene and number of threads and a column per engine. `extra` are names of columns at the
-/// end, which `row` fills.
+/// A table with a row per scene and number of threads and a column per engine. `extra` are names of columns
+/// at the end, which `row` fills.
 fn table<'a>(
     page: &mut String,
     cells: &[&'a Cell<'a>],
@@ -167,7 +167,8 @@ fn quality(page: &mut String, cells: &[Cell], dim: u32) {
     });
 }
 
-/// This engine's deepest overlap, and the displacement of a pyramid's top, relative to the least of any peer's.
+/// This engine's deepest overlap, and the displacement of a pyramid's top, relative to the least
+/// of any peer's.
 fn against_peers(beside: &[&Cell]) -> String {
     let Some(ours) = engine_cell(beside.iter().copied(), "ours") else { return "–".to_owned() };
     let ratio = |measure: fn(&Cell) -> Option<f32>| {

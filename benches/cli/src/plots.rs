@@ -14,7 +14,8 @@ use crate::table::{Cell, ENGINES, best_peer, engine_cell, shown};
 
 const FONT: &str = "sans-serif";
 const GREY: RGBColor = RGBColor(110, 110, 110);
-/// Colours that people with any colour vision tell apart (M. Okabe and K. Ito, "Color Universal Design", 2008).
+/// Colours that people with any colour vision tell apart (M. Okabe and K. Ito, "Color Universal
+/// Design", 2008).
 const COLOURS: [(&str, RGBColor); 5] = [
     ("ours", RGBColor(0, 114, 178)),
     ("box2d", RGBColor(230, 159, 0)),

@@ -131,8 +131,8 @@ impl<'a> Runner<'a> {
         Ok(())
     }
 
-    /// Repeats a job, up to three times, until other processes were idle. An engine that fails does not stop the
-    /// others.
+    /// Repeats a job, up to three times, until other processes were idle. An engine that fails does not
+    /// stop the others.
     fn run_job(&mut self, job: &Job, repeat: usize) -> Result<(), String> {
         let Job { dim, scene, engine, threads, .. } = job;
         let name = format!("{dim}d/{scene} {engine}, threads {threads}");

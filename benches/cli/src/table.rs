@@ -140,7 +140,8 @@ fn quality(report: &Report, mean: f64) -> String {
     )
 }
 
-/// Where the time of a step goes: the shares of kernel, ECS and Bevy, every stage, and the engine's own timers.
+/// Where the time of a step goes: the shares of kernel, ECS and Bevy, every stage, and the
+/// engine's own timers.
 pub fn stage_lines(reports: &[Report]) -> String {
     let mut out = String::new();
     for cell in cells(reports, true) {

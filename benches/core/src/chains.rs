@@ -23,12 +23,13 @@ pub struct Strain {
     pub widest: f32,
     /// By what share of its length the chain is longer at the end than it was.
     pub stretch: f32,
-    /// The most that the energy of the centres of mass was above that of the start, in J per kg of the weight. Rotation is left out.
+    /// The most that the energy of the centres of mass was above that of the start, in J per kg of the
+    /// weight. Rotation is left out.
     pub gained: f32,
 }
 
-/// A chain that hangs along an axis from a fixed body, let go from rest. `link` and `weight` are shapes with their
-/// densities; a link is a metre long, and so is the weight, of a mass in kg.
+/// A chain that hangs along an axis from a fixed body, let go from rest. `link` and `weight` are shapes with
+/// their densities; a link is a metre long, and so is the weight, of a mass in kg.
 pub(crate) fn chain<D: Dimension>(
     axis: usize,
     link: (D::Shape, f32),

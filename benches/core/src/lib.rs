@@ -1,5 +1,5 @@
-//! The part of the benches that is independent of engines: worlds, scenes, clock, measures of the final state, and the
-//! worker that runs one scene on one engine.
+//! The part of the benches that is independent of engines: worlds, scenes, clock, measures of the final
+//! state, and the worker that runs one scene on one engine.
 //!
 //! Everything is written once for both dimensions, over the types of a [`world::Dimension`].
 

@@ -2,13 +2,14 @@
 //!
 //! On systems other than Linux, processes are not pinned, and disturbed runs are not detected.
 
-/// Pins the process to as many cores as the run may use, from the end of the list, before any engine starts a thread.
-/// So "1 thread" means one core for every engine.
+/// Pins the process to as many cores as the run may use, from the end of the list, before any engine starts a
+/// thread. So "1 thread" means one core for every engine.
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "the C library's calls")]
 pub fn pin(threads: usize) {
     let size = std::mem::size_of::<libc::cpu_set_t>();
-    // SAFETY: a `cpu_set_t` is plain bits, for which all zeroes are an empty set, and both calls are given its size.
+    // SAFETY: a `cpu_set_t` is plain bits, for which all zeroes are an empty set, and both calls are
+    // given its size.
     unsafe {
         let mut all: libc::cpu_set_t = std::mem::zeroed();
         if libc::sched_getaffinity(0, size, &mut all) != 0 {
@@ -62,7 +63,8 @@ impl Usage {
     }
 }
 
-/// CPU time that all processes have used so far, and that the host of a virtual machine gave to others, in seconds.
+/// CPU time that all processes have used so far, and that the host of a virtual machine gave to
+/// others, in seconds.
 pub fn busy_s() -> f64 {
     /// The kernel counts in hundredths of a second.
     const HZ: f64 = 100.0;

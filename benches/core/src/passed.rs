@@ -5,8 +5,8 @@ use crate::{
     world::{Body, Dimension, Kind, State},
 };
 
-/// How far inside something static, in metres, a bullet's centre counts as having passed its surface. No engine leaves
-/// one that bounced so deep.
+/// How far inside something static, in metres, a bullet's centre counts as having passed its surface. No
+/// engine leaves one that bounced so deep.
 const DEEP: f32 = 0.1;
 /// Boxes wider than this, in metres, are tested against every path.
 const WIDE: f32 = 10.0;
@@ -17,8 +17,8 @@ struct Inside<D: Dimension> {
     high: D::Vec,
 }
 
-/// Follows the centres of a scene's bullets. A path is straight within a step. Static bodies count as their bounding
-/// boxes, which those of upright boxes are.
+/// Follows the centres of a scene's bullets. A path is straight within a step. Static bodies count as their
+/// bounding boxes, which those of upright boxes are.
 pub(crate) struct Passed<D: Dimension> {
     /// By the low end in x.
     narrow: Vec<Inside<D>>,

@@ -17,7 +17,8 @@ struct Item<D: Dimension> {
     high: D::Vec,
 }
 
-/// Shapes wider than this, in metres, would make a plain sweep quadratic: they are swept against everything once.
+/// Shapes wider than this, in metres, would make a plain sweep quadratic: they are swept against
+/// everything once.
 const WIDE: f32 = 10.0;
 
 /// Measures the final state.

@@ -48,7 +48,8 @@ pub enum Work {
     Despawn,
 }
 
-/// Features that a scene may need, beyond single bodies of one shape. Engines that lack one do not run the scene.
+/// Features that a scene may need, beyond single bodies of one shape. Engines that lack one do not
+/// run the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
     /// Moving bodies.

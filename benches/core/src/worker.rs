@@ -1,5 +1,5 @@
-//! One run of one scene on one engine, in a process of its own: task pools are global in some engines, and a crash or
-//! leak in one run must not affect the next.
+//! One run of one scene on one engine, in a process of its own: task pools are global in some engines, and a
+//! crash or leak in one run must not affect the next.
 
 use std::time::Instant;
 

@@ -162,8 +162,9 @@ impl<D: Dimension> Body<D> {
 
 /// Keeps a point of one body at a point of another. The two bodies do not collide.
 ///
-/// With limits, the second body turns against the first by no more: in 2D from the first to the second angle; in 3D its y axis by up to
-/// the first from the first body's, and about it by up to the second either way. In radians.
+/// With limits, the second body turns against the first by no more: in 2D from the first to the second
+/// angle; in 3D its y axis by up to the first from the first body's, and about it by up to the second either
+/// way. In radians.
 #[derive(Clone, Copy, Debug)]
 pub struct Joint<D: Dimension> {
     /// The first body.

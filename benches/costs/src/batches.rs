@@ -21,7 +21,8 @@ pub fn measure() {
     }
 }
 
-/// Median times of all rays by one thread and by two, which take turns. `cast` casts rays in calls of a given number.
+/// Median times of all rays by one thread and by two, which take turns. `cast` casts rays in calls of a
+/// given number.
 fn one_and_two(mut cast: impl FnMut(usize)) -> [f64; 2] {
     let mut times = [Vec::new(), Vec::new()];
     for _ in 0..REPEATS {

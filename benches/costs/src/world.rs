@@ -12,7 +12,8 @@ use bevy::{
 /// Number of frames that are timed.
 const FRAMES: usize = 300;
 
-/// An app that takes one step of 1/60 s in each frame. Bevy's compute pool has one thread, beside the main thread.
+/// An app that takes one step of 1/60 s in each frame. Bevy's compute pool has one thread, beside
+/// the main thread.
 pub fn app(plugins: impl FnOnce(&mut App)) -> App {
     let task_pools = TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) };
     let mut app = App::new();
@@ -24,8 +25,8 @@ pub fn app(plugins: impl FnOnce(&mut App)) -> App {
     app
 }
 
-/// Boxes that touch the floor and the next box, so that there are about twice as many pairs as boxes. They do not sleep.
-/// `with` adds to each box.
+/// Boxes that touch the floor and the next box, so that there are about twice as many pairs as boxes. They do
+/// not sleep. `with` adds to each box.
 pub fn boxes<B: Bundle>(count: usize, plugins: impl FnOnce(&mut App), with: impl Fn() -> B) -> App {
     let mut app = app(|app| {
         app.add_plugins(PhysicsPlugins::new(Update));

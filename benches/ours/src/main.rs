@@ -1,5 +1,5 @@
-//! A worker with only this engine. The adapters are the same files as for Avian 0.7; only the crates behind `backend`
-//! differ.
+//! A worker with only this engine. The adapters are the same files as for Avian 0.7; only the crates behind
+//! `backend` differ.
 
 mod backend {
     pub use avian2d as d2;

@@ -6,7 +6,7 @@
 
 #![expect(unsafe_code, reason = "the caller of `build_rows` answers for the tables")]
 
-use avian_kernel3d::contact::{ContactTable, Link, NarrowPhaseInput};
+use avian_kernel3d::contact::{ContactManager, ContactTable, NarrowPhaseInput};
 use avian_kernel3d::data::BitSet;
 use avian_kernel3d::graph::ColorGraph;
 use avian_kernel3d::math::{Rot, Vector, WorldPose};
@@ -39,22 +39,22 @@ fn main() {
         solver.bodies.masses[1] = MassRow::new(1.0 / mass.mass, mass.inertia.inverse());
         solver.bodies.motions[1] = Motion { acceleration: Vector::Y * -9.81, ..Motion::FREE };
         // A contact exists from the first overlap of the enlarged boxes on.
-        let mut link = Link {
+        let mut manager = ContactManager {
             bodies: &mut bodies,
             colliders: &mut colliders,
             contacts: &mut contacts,
             colors: &mut colors,
             islands: None,
         };
-        if link.contacts.is_empty() && link.colliders.fat[0].overlaps(&link.colliders.fat[1]) {
-            link.create(0, 1);
+        if manager.contacts.is_empty() && manager.colliders.fat[0].overlaps(&manager.colliders.fat[1]) {
+            manager.create(0, 1);
         }
         changed.clear();
-        let input = NarrowPhaseInput::new(link.bodies, link.colliders, &(), dt);
-        link.contacts.update(&input, &pool, &mut buffers, &mut changed);
-        link.apply(&changed, |_, _, _| {});
+        let input = NarrowPhaseInput::new(manager.bodies, manager.colliders, &(), dt);
+        manager.contacts.update(&input, &pool, &mut buffers, &mut changed);
+        manager.apply(&changed, |_, _, _| {});
         let input = RowInput { contacts: &contacts, bodies: &bodies, colliders: &colliders };
-        // SAFETY: contacts, colours and bodies belong together: only `link` has changed them.
+        // SAFETY: contacts, colours and bodies belong together: only `manager` has changed them.
         unsafe { solver.build_rows(&input, &colors, &params, &pool) };
         (0..4).for_each(|_| solver.substep(&params, &pool));
         solver.restitute(&params, &pool);

@@ -18,7 +18,8 @@ use crate::{
 /// The system sets that every broad phase shares.
 ///
 /// To use your own, disable [`BvhBroadPhasePlugin`] and add pairs to
-/// [`ContactGraph`](crate::collision::contact_types::ContactGraph) in [`BroadPhaseSystems::CollectCollisions`].
+/// [`ContactGraph`](crate::collision::contact_types::ContactGraph) in
+/// [`BroadPhaseSystems::CollectCollisions`].
 pub struct BroadPhaseCorePlugin;
 
 impl Plugin for BroadPhaseCorePlugin {
@@ -32,7 +33,8 @@ impl Plugin for BroadPhaseCorePlugin {
     }
 }
 
-/// Finds pairs with the bounding volume hierarchies of [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin).
+/// Finds pairs with the bounding volume hierarchies of
+/// [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin).
 ///
 /// `H` are the [`CollisionHooks`] that filter them.
 pub struct BvhBroadPhasePlugin<H: CollisionHooks = ()>(PhantomData<fn() -> H>);

@@ -97,8 +97,8 @@ impl ColliderAabb {
     }
 }
 
-/// The box of a collider in the trees, larger than its [`ColliderAabb`]. The tree changes only when the tight box
-/// leaves it.
+/// The box of a collider in the trees, larger than its [`ColliderAabb`]. The tree changes only when the tight
+/// box leaves it.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

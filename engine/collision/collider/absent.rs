@@ -1,5 +1,5 @@
-//! Stands in for the default collider without feature `default-collider`: a type without values, so that no entity has
-//! one and queries for it are empty.
+//! Stands in for the default collider without feature `default-collider`: a type without values, so that no
+//! entity has one and queries for it are empty.
 
 use bevy_ecs::prelude::Component;
 use kernel::{

@@ -15,8 +15,8 @@ pub trait IntoCollider<C: AnyCollider> {
     fn collider(&self) -> C;
 }
 
-/// The arguments of [`AnyCollider::aabb_with_context`] besides the collider: its entity, and the system parameter of
-/// the collider type.
+/// The arguments of [`AnyCollider::aabb_with_context`] besides the collider: its entity, and the system
+/// parameter of the collider type.
 #[derive(Deref)]
 pub struct AabbContext<'a, 'w, 's, T: ReadOnlySystemParam> {
     /// The collider's entity.
@@ -45,8 +45,8 @@ impl AabbContext<'_, '_, '_, ()> {
     }
 }
 
-/// The arguments of [`AnyCollider::contact_manifolds_with_context`] besides the colliders: their entities, and the system
-/// parameter of the collider type.
+/// The arguments of [`AnyCollider::contact_manifolds_with_context`] besides the colliders: their entities,
+/// and the system parameter of the collider type.
 #[derive(Deref)]
 pub struct ContactManifoldContext<'a, 'w, 's, T: ReadOnlySystemParam> {
     /// The first collider's entity.
@@ -73,14 +73,15 @@ impl ContactManifoldContext<'_, '_, '_, ()> {
 
 /// A component that the engine can use as a collider.
 ///
-/// Collider types that need no other data set `Context = ()` and get [`SimpleCollider`]. Others name a read-only system
-/// parameter, for instance a query for components that their shape depends on.
+/// Collider types that need no other data set `Context = ()` and get [`SimpleCollider`]. Others name a
+/// read-only system parameter, for instance a query for components that their shape depends on.
 ///
 /// A type of your own works with [`ColliderBackendPlugin`](super::ColliderBackendPlugin) and
-/// [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) for it. Colliders of one type collide with each
-/// other, not with those of other types. Its manifolds are computed by one thread, once per step and pair; spatial queries and
-/// sweeps of fast bodies do not see it. Where its shape depends on a context, the box is looked at before each step; a change that
-/// leaves the box as it is must be told by `set_changed` on the collider, or bodies sleep on.
+/// [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) for it. Colliders of one type
+/// collide with each other, not with those of other types. Its manifolds are computed by one thread, once per
+/// step and pair; spatial queries and sweeps of fast bodies do not see it. Where its shape depends on a
+/// context, the box is looked at before each step; a change that leaves the box as it is must be told by
+/// `set_changed` on the collider, or bodies sleep on.
 pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
     /// The system parameter that the methods need.
     type Context: for<'w, 's> ReadOnlySystemParam<Item<'w, 's>: Send + Sync>;
@@ -93,7 +94,8 @@ pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
         context: AabbContext<Self::Context>,
     ) -> ColliderAabb;
 
-    /// The box around the collider on its way from one pose to another. By default the union of the boxes at both ends.
+    /// The box around the collider on its way from one pose to another. By default the union of the boxes
+    /// at both ends.
     fn swept_aabb_with_context(
         &self,
         start_position: Vector,
@@ -108,8 +110,9 @@ pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
 
     /// Replaces `manifolds` by those of this collider and another at poses in the world.
     ///
-    /// Normals are from this collider to the other, points have [`point`](crate::prelude::ContactPoint::point) in the world.
-    /// Points up to `prediction_distance` metres apart are wanted, with negative penetration: they stop what moves fast.
+    /// Normals are from this collider to the other, points have
+    /// [`point`](crate::prelude::ContactPoint::point) in the world. Points up to `prediction_distance` metres
+    /// apart are wanted, with negative penetration: they stop what moves fast.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     fn contact_manifolds_with_context(
         &self,

@@ -27,11 +27,11 @@ use bevy_ecs::schedule::ScheduleLabel;
 use bevy_ecs::system::{SystemChangeTick, SystemParam};
 use core::marker::PhantomData;
 
-/// Makes components of type `C` colliders: adds the components that every collider has, lets their scale follow the
-/// transform, and updates mass properties.
+/// Makes components of type `C` colliders: adds the components that every collider has, lets their scale
+/// follow the transform, and updates mass properties.
 ///
-/// The plugin for [`Collider`](super::Collider) is part of `PhysicsPlugins`. Add one for each collider type of your
-/// own.
+/// The plugin for [`Collider`](super::Collider) is part of `PhysicsPlugins`. Add one for each collider
+/// type of your own.
 pub struct ColliderBackendPlugin<C: ScalableCollider> {
     schedule: Interned<dyn ScheduleLabel>,
     _collider: PhantomData<C>,
@@ -132,8 +132,8 @@ impl<C: ScalableCollider> Entrance<'_, '_, C> {
     }
 }
 
-/// Computes scale and mass of a new collider before the mass of its body: observers of insertion run after all
-/// observers of addition.
+/// Computes scale and mass of a new collider before the mass of its body: observers of insertion run after
+/// all observers of addition.
 fn enter_added<C: ScalableCollider>(added: On<Add, C>, mut entrance: Entrance<C>) {
     entrance.enter(added.entity);
 }
@@ -151,8 +151,8 @@ fn enter_replaced<C: ScalableCollider>(replaced: On<Discard, (C, ColliderDensity
     });
 }
 
-/// Removes the components that the engine added to a collider, and then recomputes the body's mass: commands run in the
-/// order of parameters.
+/// Removes the components that the engine added to a collider, and then recomputes the body's mass: commands
+/// run in the order of parameters.
 fn strip<C: AnyCollider>(removed: On<Remove, C>, mut commands: Commands, mut queue: MassPropertyQueue) {
     let former = removed.entity;
     queue.push(former);

@@ -16,10 +16,11 @@ use super::{
     constructor::{ColliderConstructor, ConstructorSystems},
 };
 
-/// Keeps the colliders that [`ColliderConstructor`]s make from meshes, so that entities with the same mesh and the same
-/// constructor share one shape.
+/// Keeps the colliders that [`ColliderConstructor`]s make from meshes, so that entities with the same mesh
+/// and the same constructor share one shape.
 ///
-/// A collider is forgotten when its mesh is changed or removed. Without assets in the app, the plugin does nothing.
+/// A collider is forgotten when its mesh is changed or removed. Without assets in the app, the plugin
+/// does nothing.
 #[derive(Default)]
 pub struct ColliderCachePlugin;
 
@@ -36,8 +37,8 @@ impl Plugin for ColliderCachePlugin {
 
 /// Colliders by their mesh.
 ///
-/// Changes of assets are told at the end of a frame. A collider that was made before is not used in the frame in which
-/// assets changed: it may be of the mesh as it was.
+/// Changes of assets are told at the end of a frame. A collider that was made before is not used in the frame
+/// in which assets changed: it may be of the mesh as it was.
 #[derive(Resource, Default)]
 pub(crate) struct ColliderCache {
     colliders: HashMap<AssetId<Mesh>, Vec<Kept>>,
@@ -62,7 +63,8 @@ impl ColliderCache {
         changed.is_newer_than(self.told, now)
     }
 
-    /// Begins a round of constructors. `is_changed` is whether a mesh may have changed, and that was not told yet.
+    /// Begins a round of constructors. `is_changed` is whether a mesh may have changed, and that was
+    /// not told yet.
     pub(crate) fn begin(&mut self, is_changed: bool) {
         self.round += 1;
         self.trusted = if is_changed { self.round } else { 0 };
@@ -78,7 +80,8 @@ impl ColliderCache {
     /// Keeps a collider that was made in this round.
     pub(crate) fn insert(&mut self, mesh: AssetId<Mesh>, constructor: &ColliderConstructor, made: &Collider) {
         let of_mesh = self.colliders.entry(mesh).or_default();
-        // Those of former rounds are made anew when they are next needed, or are outdated. One with NaN equals none.
+        // Those of former rounds are made anew when they are next needed, or are outdated. One with
+        // NaN equals none.
         of_mesh.retain(|kept| kept.round >= self.trusted && kept.constructor != *constructor);
         if of_mesh.len() < MOST_OF_MESH {
             let (constructor, collider) = (constructor.clone(), made.clone());

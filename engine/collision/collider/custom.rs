@@ -27,7 +27,8 @@ pub(crate) fn is_custom<C: AnyCollider>() -> bool {
     TypeId::of::<C>() != TypeId::of::<Collider>()
 }
 
-/// Keeps the shapes of a collider type of the app up to date: of new colliders at once, of changed ones before each step.
+/// Keeps the shapes of a collider type of the app up to date: of new colliders at once, of changed ones
+/// before each step.
 pub(super) fn watch_shapes<C: AnyCollider>(app: &mut App) {
     app.add_observer(shape_added::<C>).add_observer(shape_removed::<C>).add_systems(
         PhysicsSchedule,

@@ -150,9 +150,9 @@ impl Not for LayerMask {
 
 /// The layers that a collider is in, and those it interacts with.
 ///
-/// Two colliders interact if each is in a layer that the other's filters contain. By default a collider is in layer 0
-/// and interacts with all layers. The component is immutable: insert it again to change it, and existing contacts are
-/// filtered again.
+/// Two colliders interact if each is in a layer that the other's filters contain. By default a collider is in
+/// layer 0 and interacts with all layers. The component is immutable: insert it again to change it, and
+/// existing contacts are filtered again.
 ///
 /// ```
 /// # use avian::prelude::*;

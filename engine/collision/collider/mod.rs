@@ -65,8 +65,9 @@ pub struct ColliderDisabled;
 
 /// Makes a collider a sensor: it detects contacts, but does not collide and has no mass.
 ///
-/// A sensor detects the colliders of dynamic and kinematic bodies. A sensor on such a body detects static colliders as well. A
-/// sensor without a body detects other colliders without a body, but not static floors and walls.
+/// A sensor detects the colliders of dynamic and kinematic bodies. A sensor on such a body detects static
+/// colliders as well. A sensor without a body detects other colliders without a body, but not static
+/// floors and walls.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -83,8 +84,8 @@ pub struct ColliderDisabled;
 #[doc(alias = "Trigger")]
 pub struct Sensor;
 
-/// The colliders that a collider touches, sensors included. Insert it on a collider; the engine fills it at the end of each
-/// step, before collision events are sent. Colliders that are despawned leave it at once.
+/// The colliders that a collider touches, sensors included. Insert it on a collider; the engine fills it at
+/// the end of each step, before collision events are sent. Colliders that are despawned leave it at once.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -109,8 +110,8 @@ impl MapEntities for CollidingEntities {
 
 /// Distance from the surface at which other colliders are kept, in metres.
 ///
-/// A small margin makes thin and jagged shapes more robust, at the cost of a visible gap. A collider without the
-/// component has the margin of its body, or none.
+/// A small margin makes thin and jagged shapes more robust, at the cost of a visible gap. A collider without
+/// the component has the margin of its body, or none.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -1,7 +1,7 @@
 //! The scale of colliders follows the scale of their transforms.
 //!
-//! [`ColliderTransform::scale`] is the scale of a collider's transform in the world. It changes only if a transform at or
-//! above the collider was changed by the app, so bodies that merely move cost nothing here.
+//! [`ColliderTransform::scale`] is the scale of a collider's transform in the world. It changes only if a
+//! transform at or above the collider was changed by the app, so bodies that merely move cost nothing here.
 
 use super::{ScalableCollider, collider_transform::ColliderTransform};
 use crate::math::{Scalar, Vector, vector_from_xyz};
@@ -20,16 +20,17 @@ use core::ops::DerefMut;
 /// Number of subdivisions of a curved shape whose transform is scaled unevenly.
 const SUBDIVISIONS: u32 = 10;
 
-/// Smallest and largest factor of a scale. Smaller ones make a point of a shape of usual size, larger ones exceed the
-/// coordinates that colliders may have.
+/// Smallest and largest factor of a scale. Smaller ones make a point of a shape of usual size, larger ones
+/// exceed the coordinates that colliders may have.
 const MIN_SCALE: Scalar = 1.0e-5;
 const MAX_SCALE: Scalar = 1.0e7;
 
 /// Scales whose relative difference is at most this count as the same.
 ///
-/// A turn below an uneven scale leaves noise in the scale: an `f32` quaternion is a unit to about 10⁻⁷, and a scale is the
-/// product of one such error for each ancestor. 10⁻⁵ has room for a deep hierarchy, and is too small to see: 10 µm of a
-/// metre. With less, shapes would be built again whenever a parent turns. With more, a slow growth would be in jumps.
+/// A turn below an uneven scale leaves noise in the scale: an `f32` quaternion is a unit to about 10⁻⁷, and a
+/// scale is the product of one such error for each ancestor. 10⁻⁵ has room for a deep hierarchy, and is too
+/// small to see: 10 µm of a metre. With less, shapes would be built again whenever a parent turns. With more,
+/// a slow growth would be in jumps.
 const SAME_SCALE: Scalar = 1.0e-5;
 
 /// Whether two scales are the same but for rounding. Never, if one is not finite.
@@ -37,8 +38,8 @@ fn is_same(a: Vector, b: Vector) -> bool {
     (a - b).abs().cmple(b.abs() * SAME_SCALE).all()
 }
 
-/// The scale without noise between its axes: a scale that is the same along two axes is so in all bits, so that round
-/// shapes stay round.
+/// The scale without noise between its axes: a scale that is the same along two axes is so in all bits, so
+/// that round shapes stay round.
 fn without_noise(scale: Vector) -> Vector {
     let mut axes = scale.to_array();
     for i in 1..axes.len() {
@@ -52,7 +53,8 @@ fn without_noise(scale: Vector) -> Vector {
     Vector::from_array(axes)
 }
 
-/// Gives a collider the scale of its transform. `false` if no collider can have it: the collider keeps its own.
+/// Gives a collider the scale of its transform. `false` if no collider can have it: the collider
+/// keeps its own.
 fn fit<C: ScalableCollider>(mut collider: impl DerefMut<Target = C>, scale: Vector) -> bool {
     if !scale.to_array().iter().all(|s| (MIN_SCALE..=MAX_SCALE).contains(&s.abs())) {
         return false;
@@ -80,8 +82,8 @@ pub struct TransformScale<'w, 's> {
 }
 
 impl TransformScale<'_, '_> {
-    /// Gives a collider the scale of its transform, at once. [`update_collider_scale`] follows later changes, and warns of
-    /// scales that no collider has.
+    /// Gives a collider the scale of its transform, at once. [`update_collider_scale`] follows later changes,
+    /// and warns of scales that no collider has.
     pub(super) fn apply_to<C: ScalableCollider>(&self, entity: Entity, collider: impl DerefMut<Target = C>) {
         let is_on = self.config.as_ref().is_some_and(|config| config.transform_to_collider_scale);
         if !is_on || !self.followers.contains(entity) {
@@ -97,10 +99,11 @@ impl TransformScale<'_, '_> {
 /// What the search for changes reads.
 type Searched<C> = (Entity, Ref<'static, C>, Ref<'static, ColliderTransform>);
 
-/// Gives colliders the scale of their transforms ([`ColliderTransform::scale`]), if the scale or the collider changed.
+/// Gives colliders the scale of their transforms ([`ColliderTransform::scale`]), if the scale or the
+/// collider changed.
 ///
-/// A scale that is almost zero, too large or not finite is reported once, and the collider keeps the last good one. Part of
-/// [`ColliderBackendPlugin`](super::ColliderBackendPlugin). It runs while
+/// A scale that is almost zero, too large or not finite is reported once, and the collider keeps the last
+/// good one. Part of [`ColliderBackendPlugin`](super::ColliderBackendPlugin). It runs while
 /// [`PhysicsTransformConfig::transform_to_collider_scale`] is on.
 pub fn update_collider_scale<C: ScalableCollider>(
     mut colliders: ParamSet<(Query<Searched<C>>, Query<(&mut C, &ColliderTransform)>)>,

@@ -12,13 +12,15 @@ use crate::data_structures::pair_key::PairKey;
 
 /// All pairs of colliders whose boxes overlap, touching or not, awake or asleep, in the order of ids.
 ///
-/// The resource is filled after the narrow phase and after the solver, from the step after it was first read on: an app
-/// that never reads it pays nothing. Contacts of despawned colliders are removed at once, and the last contacts take their
-/// places in the order. [`Collisions::graph`](super::Collisions::graph) is filled at once.
+/// The resource is filled after the narrow phase and after the solver, from the step after it was first
+/// read on: an app that never reads it pays nothing. Contacts of despawned colliders are removed at once,
+/// and the last contacts take their places in the order. [`Collisions::graph`](super::Collisions::graph) is
+/// filled at once.
 ///
 /// A broad phase of the app adds pairs to the resource with [`add_edge`](Self::add_edge), in
-/// [`BroadPhaseSystems::CollectCollisions`](crate::prelude::BroadPhaseSystems::CollectCollisions). They become contacts
-/// after that set. To change manifolds, use [`CollisionHooks`](crate::prelude::CollisionHooks).
+/// [`BroadPhaseSystems::CollectCollisions`](crate::prelude::BroadPhaseSystems::CollectCollisions). They
+/// become contacts after that set. To change manifolds, use
+/// [`CollisionHooks`](crate::prelude::CollisionHooks).
 #[derive(Resource, Clone, Debug, Default)]
 pub struct ContactGraph {
     /// Whether it was ever read.
@@ -128,19 +130,20 @@ impl ContactGraph {
         (core::mem::take(&mut self.added), core::mem::take(&mut self.removed))
     }
 
-    /// Adds a pair of colliders, which becomes a contact after the broad phase of this step, or of the next one if that is
-    /// over. The contact lasts until the enlarged boxes of the colliders come apart.
+    /// Adds a pair of colliders, which becomes a contact after the broad phase of this step, or of the next
+    /// one if that is over. The contact lasts until the enlarged boxes of the colliders come apart.
     ///
-    /// Returns `None` if the pair has a contact or was added already. The id is [`ContactId::PLACEHOLDER`], as the
-    /// contact gets its own when it is made. Bodies and flags of `contact_edge` are not used: they follow from the
-    /// colliders. No contact is made of a collider with itself or one of the same body, of layers that do not interact,
-    /// and of two without a dynamic or kinematic body, unless both have no body and one is a sensor.
+    /// Returns `None` if the pair has a contact or was added already. The id is [`ContactId::PLACEHOLDER`],
+    /// as the contact gets its own when it is made. Bodies and flags of `contact_edge` are not used: they
+    /// follow from the colliders. No contact is made of a collider with itself or one of the same body, of
+    /// layers that do not interact, and of two without a dynamic or kinematic body, unless both have no body
+    /// and one is a sensor.
     pub fn add_edge(&mut self, contact_edge: ContactEdge) -> Option<ContactId> {
         self.add_edge_with(contact_edge, |_| ())
     }
 
-    /// The same. If `pair_callback` clears [`ContactPairFlags::GENERATE_CONSTRAINTS`], the colliders are not pushed apart.
-    /// Nothing else of the pair is used.
+    /// The same. If `pair_callback` clears [`ContactPairFlags::GENERATE_CONSTRAINTS`], the colliders are not
+    /// pushed apart. Nothing else of the pair is used.
     pub fn add_edge_with<F>(&mut self, contact_edge: ContactEdge, pair_callback: F) -> Option<ContactId>
     where
         F: FnMut(&mut ContactPair),
@@ -172,8 +175,8 @@ impl ContactGraph {
         Some(ContactId::PLACEHOLDER)
     }
 
-    /// Removes the contact of two colliders after the broad phase of this step, or of the next one. Returns what it was.
-    /// A collision that ends is reported.
+    /// Removes the contact of two colliders after the broad phase of this step, or of the next one. Returns
+    /// what it was. A collision that ends is reported.
     ///
     /// The broad phase finds the pair again when one of the colliders moves.
     pub fn remove_edge(&mut self, entity1: Entity, entity2: Entity) -> Option<ContactEdge> {

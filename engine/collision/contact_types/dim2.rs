@@ -17,8 +17,9 @@ pub struct ContactManifold {
     pub friction: Scalar,
     /// The mixed coefficient of restitution.
     pub restitution: Scalar,
-    /// The speed of the second surface relative to the first that friction brings about, m/s, as of a conveyor belt. Along
-    /// the tangent, the normal turned clockwise. 0 unless [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
+    /// The speed of the second surface relative to the first that friction brings about, m/s, as of a
+    /// conveyor belt. Along the tangent, the normal turned clockwise. 0 unless
+    /// [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
     pub tangent_speed: Scalar,
 }
 

@@ -19,8 +19,8 @@ pub struct ContactManifold {
     pub friction: Scalar,
     /// The mixed coefficient of restitution.
     pub restitution: Scalar,
-    /// The velocity of the second surface relative to the first that friction brings about, in the world, m/s, as of a
-    /// conveyor belt. 0 unless [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
+    /// The velocity of the second surface relative to the first that friction brings about, in the
+    /// world, m/s, as of a conveyor belt. 0 unless [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
     pub tangent_velocity: Vector,
 }
 

@@ -14,8 +14,8 @@ impl ContactManifold {
         self.points.iter().fold(0.0, |max, point| max.max(point.normal_impulse))
     }
 
-    /// Copies the impulses that a step starts from, from those of `previous_contacts` that are the same points: of the
-    /// same known features, or both anchors nearer than `distance_threshold`.
+    /// Copies the impulses that a step starts from, from those of `previous_contacts` that are the same
+    /// points: of the same known features, or both anchors nearer than `distance_threshold`.
     pub fn match_contacts(&mut self, previous_contacts: &[ContactPoint], distance_threshold: Scalar) {
         let near = distance_threshold * distance_threshold;
         for point in &mut self.points {

@@ -119,7 +119,8 @@ bitflags! {
         const STARTED_TOUCHING = 1 << 2;
         /// The colliders ceased to touch in the last narrow phase.
         const STOPPED_TOUCHING = 1 << 3;
-        /// The solver pushes the bodies apart if the colliders touch: none is a sensor, and a body is dynamic.
+        /// The solver pushes the bodies apart if the colliders touch: none is a sensor, and a
+        /// body is dynamic.
         const GENERATE_CONSTRAINTS = 1 << 4;
         /// The contact began to generate constraints in the last step.
         const STARTED_GENERATING_CONSTRAINTS = 1 << 5;
@@ -207,8 +208,8 @@ impl ContactPair {
         self.flags.contains(ContactPairFlags::STARTED_TOUCHING)
     }
 
-    /// Whether the colliders ceased to touch in the last narrow phase. If their boxes came apart as well, the pair is
-    /// gone at once.
+    /// Whether the colliders ceased to touch in the last narrow phase. If their boxes came apart as well, the
+    /// pair is gone at once.
     pub fn collision_ended(&self) -> bool {
         self.flags.contains(ContactPairFlags::STOPPED_TOUCHING)
     }

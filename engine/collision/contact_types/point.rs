@@ -10,24 +10,27 @@ pub struct ContactPoint {
     pub anchor1: Vector,
     /// From the second body's centre of mass to the point, in world axes, in metres.
     pub anchor2: Vector,
-    /// The point in the world, midway between both surfaces. Until the next step it moves with the first body.
+    /// The point in the world, midway between both surfaces. Until the next step it moves with
+    /// the first body.
     pub point: Vector,
     /// How deep the surfaces overlap, in metres; negative if they are apart.
     pub penetration: Scalar,
-    /// The impulse along the normal over the whole step, N·s. Under a resting body it is weight times the length of the step.
+    /// The impulse along the normal over the whole step, N·s. Under a resting body it is weight times the
+    /// length of the step.
     ///
-    /// Sums over the substeps are kept while a collider has [`CollisionEventsEnabled`](crate::prelude::CollisionEventsEnabled),
-    /// [`CollidingEntities`](crate::prelude::CollidingEntities) or hooks that change contacts, and from the step after a system
-    /// first asked [`Collisions`](crate::prelude::Collisions). Without sums this is the impulse of the last substep times their
-    /// number.
+    /// Sums over the substeps are kept while a collider has
+    /// [`CollisionEventsEnabled`](crate::prelude::CollisionEventsEnabled),
+    /// [`CollidingEntities`](crate::prelude::CollidingEntities) or hooks that change contacts, and from the
+    /// step after a system first asked [`Collisions`](crate::prelude::Collisions). Without sums this is the
+    /// impulse of the last substep times their number.
     pub normal_impulse: Scalar,
-    /// The speed at which the surfaces part along the normal, m/s; negative if they approach. Before the solver it is
-    /// that of the impact, after it what is left.
+    /// The speed at which the surfaces part along the normal, m/s; negative if they approach. Before the
+    /// solver it is that of the impact, after it what is left.
     pub normal_speed: Scalar,
     /// The normal impulse that the next step starts from, N·s.
     pub warm_start_normal_impulse: Scalar,
-    /// This point's part of the friction impulse that the next step starts from, along the tangent (2D) or both tangents (3D),
-    /// N·s.
+    /// This point's part of the friction impulse that the next step starts from, along the tangent (2D) or
+    /// both tangents (3D), N·s.
     pub warm_start_tangent_impulse: TangentVector,
     /// The feature of the first shape.
     pub feature_id1: PackedFeatureId,

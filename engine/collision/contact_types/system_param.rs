@@ -17,13 +17,14 @@ use crate::{
 
 /// The pairs of colliders that touch, as a system parameter.
 ///
-/// Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are 2 cm (times the
-/// length unit) apart. Sensors touch while they overlap.
+/// Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are
+/// 2 cm (times the length unit) apart. Sensors touch while they overlap.
 ///
-/// The points of contacts are complete from [`NarrowPhaseSystems::Last`] on. Impulses, and pairs that begin to touch in the
-/// step, are known from [`SolverSystems::StoreContactImpulses`] on; in between, all pairs with points count as touching. Systems that run between steps read those of the last step, without
-/// colliders that were despawned since. Contacts are made when they are read, once for all readers; a step in which
-/// nothing is read costs nothing.
+/// The points of contacts are complete from [`NarrowPhaseSystems::Last`] on. Impulses, and pairs that begin
+/// to touch in the step, are known from [`SolverSystems::StoreContactImpulses`] on; in between, all pairs
+/// with points count as touching. Systems that run between steps read those of the last step, without
+/// colliders that were despawned since. Contacts are made when they are read, once for all readers; a step in
+/// which nothing is read costs nothing.
 ///
 /// To be told of changes, use [`CollisionStart`](crate::prelude::CollisionStart) and
 /// [`CollisionEnd`](crate::prelude::CollisionEnd).
@@ -64,8 +65,9 @@ impl Collisions<'_> {
         }
     }
 
-    /// All contacts, also of colliders that are near each other and do not touch. It is made anew in each step in which
-    /// it is read; [`get`](Self::get) and [`collisions_with`](Self::collisions_with) make only the contacts asked for.
+    /// All contacts, also of colliders that are near each other and do not touch. It is made anew in each
+    /// step in which it is read; [`get`](Self::get) and [`collisions_with`](Self::collisions_with) make only
+    /// the contacts asked for.
     pub fn graph(&self) -> &ContactGraph {
         self.views.graph(self.source())
     }

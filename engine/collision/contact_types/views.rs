@@ -23,8 +23,8 @@ use crate::{
 
 /// The contacts that were read since contacts last changed.
 ///
-/// Readers share the tables, so each contact is filled once, by the first of them. As long as nothing is read, nothing
-/// is allocated.
+/// Readers share the tables, so each contact is filled once, by the first of them. As long as nothing is
+/// read, nothing is allocated.
 #[derive(Resource, Default)]
 pub(crate) struct ContactViews {
     /// By contact id.
@@ -34,7 +34,8 @@ pub(crate) struct ContactViews {
     asked: Asked,
 }
 
-/// Forgets what was read. Piped behind each system that changes contacts, so that no system of the app reads in between.
+/// Forgets what was read. Piped behind each system that changes contacts, so that no system of the app
+/// reads in between.
 pub(crate) fn forget_views(mut views: ResMut<ContactViews>) {
     views.bypass_change_detection().forget();
 }

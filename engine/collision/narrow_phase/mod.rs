@@ -27,14 +27,15 @@ pub struct CollisionEventSystems;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Resource, Default, PartialEq)]
 pub struct NarrowPhaseConfig {
-    /// The [`SpeculativeMargin`](crate::dynamics::ccd::SpeculativeMargin) of colliders and bodies without one, in metres. Unbounded by default.
+    /// The [`SpeculativeMargin`](crate::dynamics::ccd::SpeculativeMargin) of colliders and bodies without
+    /// one, in metres. Unbounded by default.
     pub default_speculative_margin: Scalar,
     /// Maximum distance of two shapes at rest that are in contact, times
-    /// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit). 0.005 by default. With 0 resting contacts
-    /// flicker.
+    /// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit). 0.005 by default. With 0 resting
+    /// contacts flicker.
     pub contact_tolerance: Scalar,
-    /// Whether contact points keep the impulses of the same points in the last step. True by default. Without it stacks
-    /// sag.
+    /// Whether contact points keep the impulses of the same points in the last step. True by default. Without
+    /// it stacks sag.
     pub match_contacts: bool,
 }
 

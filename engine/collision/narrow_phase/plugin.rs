@@ -25,8 +25,8 @@ use crate::{
     step::{self, Owner, Stage},
 };
 
-/// Computes the contacts between colliders of type `C`. Add one instance per collider type. All instances share the
-/// settings of the first.
+/// Computes the contacts between colliders of type `C`. Add one instance per collider type. All instances
+/// share the settings of the first.
 ///
 /// `H` are the [`CollisionHooks`] that change contacts.
 pub struct NarrowPhasePlugin<C: AnyCollider, H: CollisionHooks = ()> {
@@ -42,8 +42,8 @@ struct SharedNarrowPhasePlugin {
 }
 
 impl<C: AnyCollider, H: CollisionHooks> NarrowPhasePlugin<C, H> {
-    /// Computes contacts in `schedule`, by default [`PhysicsSchedule`]. If `generate_constraints` is false, they are
-    /// not solved.
+    /// Computes contacts in `schedule`, by default [`PhysicsSchedule`]. If `generate_constraints` is false,
+    /// they are not solved.
     pub fn new(schedule: impl ScheduleLabel, generate_constraints: bool) -> Self {
         let shared = SharedNarrowPhasePlugin { schedule: schedule.intern(), generate_constraints };
         Self { shared, backend: PhantomData }

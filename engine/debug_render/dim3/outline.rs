@@ -180,7 +180,8 @@ fn round_faces(faces: &[(Vec<Vec3>, Vec3)], radius: f32, lines: &mut Strips) {
     }
 }
 
-/// The arc from one face's normal to the other's, around the edge between them, to whose outer side `side` points.
+/// The arc from one face's normal to the other's, around the edge between them, to whose outer side
+/// `side` points.
 fn arc_between(from: Vec3, to: Vec3, side: Vec3, radius: f32) -> Vec<Vec3> {
     let angle = Vec2::new(to.dot(from), to.dot(side)).to_angle();
     // Both faces of a flat solid point away from each other.

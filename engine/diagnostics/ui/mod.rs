@@ -43,7 +43,8 @@ struct Value(&'static DiagnosticPath);
 #[derive(Component)]
 struct Rows(usize);
 
-/// Spawns the panel, and again when more timers and counters were registered. Despawns it when it is disabled.
+/// Spawns the panel, and again when more timers and counters were registered. Despawns it when
+/// it is disabled.
 fn build_panel(
     settings: Res<PhysicsDiagnosticsUiSettings>,
     registered: Res<Registered>,

@@ -5,8 +5,8 @@ use crate::diagnostics::PhysicsDiagnosticsPlugin;
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::schedule::IntoScheduleConfigs;
 
-/// Shows the timers and counters of physics in a panel at the top left of the window. Adds [`PhysicsDiagnosticsPlugin`] if
-/// it is missing. Set it up with [`PhysicsDiagnosticsUiSettings`].
+/// Shows the timers and counters of physics in a panel at the top left of the window. Adds
+/// [`PhysicsDiagnosticsPlugin`] if it is missing. Set it up with [`PhysicsDiagnosticsUiSettings`].
 pub struct PhysicsDiagnosticsUiPlugin;
 
 impl Plugin for PhysicsDiagnosticsUiPlugin {

@@ -1,18 +1,20 @@
 //! Continuous collision detection: what is fast or thin collides too.
 //!
-//! A step moves a body by its velocity. A small fast body may be in front of a wall in one step and behind it in the next.
-//! Three things prevent that:
+//! A step moves a body by its velocity. A small fast body may be in front of a wall in one step and behind it
+//! in the next. Three things prevent that:
 //!
-//! - **Speculative contacts**, for all bodies: contacts of what the motion of the step brings together, made before the
-//!   shapes touch. The solver lets the gap close and no further, so that bounces and friction are those of an impact. What the
-//!   motion does not bring together is not affected. [`SpeculativeMargin`] limits how far ahead a body looks.
-//! - **A sweep against what does not move**, for all bodies that move farther in a step than half the ball within their
-//!   collider: one that got into or through static geometry is put back to the time of the impact. The next step continues
-//!   there with the contact.
+//! - **Speculative contacts**, for all bodies: contacts of what the motion of the step brings together, made
+//!   before the shapes touch. The solver lets the gap close and no further, so that bounces and friction are
+//!   those of an impact. What the motion does not bring together is not affected. [`SpeculativeMargin`]
+//!   limits how far ahead a body looks.
+//! - **A sweep against what does not move**, for all bodies that move farther in a step than half the ball
+//!   within their collider: one that got into or through static geometry is put back to the time of the
+//!   impact. The next step continues there with the contact.
 //! - **[`SweptCcd`]**, for bodies with the component: the same against kinematic and dynamic bodies.
 //!
-//! A body that is put back loses the rest of the step: for a moment it seems slower. What it would have hit later in the same
-//! step, it hits in the next one. What joints hold to it is put back with it, so that they do not open.
+//! A body that is put back loses the rest of the step: for a moment it seems slower. What it would have hit
+//! later in the same step, it hits in the next one. What joints hold to it is put back with it, so that
+//! they do not open.
 //!
 //! Bodies of 5 cm that spin at 20 rad/s, shot at a wall of 1 cm or more at 64 Hz:
 //!
@@ -35,12 +37,13 @@ use derive_more::From;
 
 use crate::math::Scalar;
 
-/// Maximum distance at which contacts of a body or collider are predicted, in metres, so that the body stops at a
-/// surface before passing it.
+/// Maximum distance at which contacts of a body or collider are predicted, in metres, so that the body stops
+/// at a surface before passing it.
 ///
-/// A *speculative* contact exists while the shapes are still separated. The solver lets them close the gap within the
-/// step and no further. The margin never exceeds the motion of both in one step, so a large one costs little. But a
-/// body may be stopped by a surface that it would have slid past: a *ghost collision*, which a smaller margin avoids.
+/// A *speculative* contact exists while the shapes are still separated. The solver lets them close the gap
+/// within the step and no further. The margin never exceeds the motion of both in one step, so a large one
+/// costs little. But a body may be stopped by a surface that it would have slid past: a *ghost collision*,
+/// which a smaller margin avoids.
 ///
 /// Read from the collider, else from its body, else
 /// [`NarrowPhaseConfig::default_speculative_margin`](crate::collision::narrow_phase::NarrowPhaseConfig::default_speculative_margin).
@@ -67,8 +70,9 @@ impl SpeculativeMargin {
     pub const MAX: Self = Self(Scalar::MAX);
 }
 
-/// The systems that sweep bodies, after [`SolverSystems::PostSubstep`](crate::dynamics::solver::schedule::SolverSystems::PostSubstep) and
-/// before [`SolverSystems::Restitution`](crate::dynamics::solver::schedule::SolverSystems::Restitution).
+/// The systems that sweep bodies, after
+/// [`SolverSystems::PostSubstep`](crate::dynamics::solver::schedule::SolverSystems::PostSubstep) and before
+/// [`SolverSystems::Restitution`](crate::dynamics::solver::schedule::SolverSystems::Restitution).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SweptCcdSystems;
 
@@ -78,12 +82,13 @@ pub type SweptCcdSet = SweptCcdSystems;
 
 /// Sweeps a body against kinematic and dynamic bodies, so that none passes the other, however fast.
 ///
-/// Both bodies are swept from where they were to where they are at the end of the step. If they meet, both go back to where
-/// they met, and collide in the next step. Layers and sensors count as for contacts. All colliders of both bodies are swept.
+/// Both bodies are swept from where they were to where they are at the end of the step. If they meet, both go
+/// back to where they met, and collide in the next step. Layers and sensors count as for contacts. All
+/// colliders of both bodies are swept.
 ///
-/// Most bodies do not need it: contacts are predicted by default, and no body passes what is static. It is for bodies whose
-/// [`SpeculativeMargin`] is small, and where something must not be missed also if a collision within the step gives it another
-/// way.
+/// Most bodies do not need it: contacts are predicted by default, and no body passes what is static. It is
+/// for bodies whose [`SpeculativeMargin`] is small, and where something must not be missed also if a
+/// collision within the step gives it another way.
 ///
 /// ```
 /// # use avian::prelude::*;

@@ -13,7 +13,8 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Sweeps fast bodies against what does not move, and bodies with [`SweptCcd`](super::SweptCcd) against what moves.
+/// Sweeps fast bodies against what does not move, and bodies with [`SweptCcd`](super::SweptCcd)
+/// against what moves.
 #[derive(Debug, Default)]
 pub struct CcdPlugin;
 

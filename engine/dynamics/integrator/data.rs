@@ -9,9 +9,9 @@ use crate::math::{AngularVector, Scalar, Vector};
 
 /// Accelerations of a body in world axes, summed up for the next step.
 ///
-/// [`Forces`](crate::dynamics::rigid_body::forces::Forces) adds to them. An app may write them by hand, which wakes the
-/// body. The next step applies them in each of its substeps, and sets them to zero at its end. Gravity, damping and
-/// constant forces are added by the solver itself and do not show here.
+/// [`Forces`](crate::dynamics::rigid_body::forces::Forces) adds to them. An app may write them by hand, which
+/// wakes the body. The next step applies them in each of its substeps, and sets them to zero at its end.
+/// Gravity, damping and constant forces are added by the solver itself and do not show here.
 ///
 /// ```
 /// # use avian::{dynamics::integrator::VelocityIntegrationData, math::Vector, prelude::*};
@@ -35,11 +35,11 @@ pub struct VelocityIntegrationData {
     pub linear_increment: Vector,
     /// Angular acceleration, in rad/s².
     pub angular_increment: AngularVector,
-    /// A factor of linear velocity per substep, for apps that integrate velocities themselves. The engine takes the
-    /// damping from [`LinearDamping`](crate::dynamics::rigid_body::LinearDamping).
+    /// A factor of linear velocity per substep, for apps that integrate velocities themselves. The engine
+    /// takes the damping from [`LinearDamping`](crate::dynamics::rigid_body::LinearDamping).
     pub linear_damping_rhs: Scalar,
-    /// A factor of angular velocity per substep, for apps that integrate velocities themselves. The engine takes the
-    /// damping from [`AngularDamping`](crate::dynamics::rigid_body::AngularDamping).
+    /// A factor of angular velocity per substep, for apps that integrate velocities themselves. The engine
+    /// takes the damping from [`AngularDamping`](crate::dynamics::rigid_body::AngularDamping).
     pub angular_damping_rhs: Scalar,
 }
 
@@ -56,12 +56,14 @@ impl VelocityIntegrationData {
         self.angular_increment += acceleration;
     }
 
-    /// Sets the linear factor of a damping of `damping_coefficient` 1/s in substeps of `delta_secs`: 1 / (1 + c h).
+    /// Sets the linear factor of a damping of `damping_coefficient` 1/s in substeps of `delta_secs`:
+    /// 1 / (1 + c h).
     pub fn update_linear_damping_rhs(&mut self, damping_coefficient: Scalar, delta_secs: Scalar) {
         self.linear_damping_rhs = 1.0 / (1.0 + damping_coefficient * delta_secs);
     }
 
-    /// Sets the angular factor of a damping of `damping_coefficient` 1/s in substeps of `delta_secs`: 1 / (1 + c h).
+    /// Sets the angular factor of a damping of `damping_coefficient` 1/s in substeps of `delta_secs`:
+    /// 1 / (1 + c h).
     pub fn update_angular_damping_rhs(&mut self, damping_coefficient: Scalar, delta_secs: Scalar) {
         self.angular_damping_rhs = 1.0 / (1.0 + damping_coefficient * delta_secs);
     }

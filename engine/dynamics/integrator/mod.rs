@@ -36,8 +36,8 @@ pub type IntegrationSet = IntegrationSystems;
 /// [`GravityScale`](crate::dynamics::rigid_body::GravityScale), in m/s².
 ///
 /// The default is 9.81 m/s² down the Y axis. It is *not* scaled by
-/// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): if a metre is 100 pixels, write `Vector::NEG_Y *
-/// 981.0`.
+/// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): if a metre is 100 pixels, write
+/// `Vector::NEG_Y * 981.0`.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -63,18 +63,19 @@ impl Gravity {
     pub const ZERO: Gravity = Gravity(Vector::ZERO);
 }
 
-/// Leaves the velocity of this body to the app: gravity, forces, damping and speed limits are not applied. Contacts
-/// still push it.
+/// Leaves the velocity of this body to the app: gravity, forces, damping and speed limits are not applied.
+/// Contacts still push it.
 #[derive(Component, Debug, Default, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default)]
 pub struct CustomVelocityIntegration;
 
-/// Leaves the position of this body to the app: its velocity does not move it. Contacts still use its velocity.
+/// Leaves the position of this body to the app: its velocity does not move it. Contacts still use
+/// its velocity.
 ///
-/// The body counts as at rest, and may fall asleep, while the app does not move it and its velocity is within its
-/// [`SleepThreshold`](crate::dynamics::rigid_body::sleeping::SleepThreshold).
+/// The body counts as at rest, and may fall asleep, while the app does not move it and its velocity is within
+/// its [`SleepThreshold`](crate::dynamics::rigid_body::sleeping::SleepThreshold).
 #[derive(Component, Debug, Default, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

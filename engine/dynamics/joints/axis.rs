@@ -25,8 +25,8 @@ use crate::math::{Scalar, to_f32};
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub struct JointAxis {
-    /// The least and the greatest value, in m or rad: none if the axis is free, one value twice if it is locked there. An
-    /// end may be infinite.
+    /// The least and the greatest value, in m or rad: none if the axis is free, one value twice if it is
+    /// locked there. An end may be infinite.
     pub limits: Option<[Scalar; 2]>,
     /// How far the axis gives way at its limits, or where it is locked.
     pub softness: JointSoftness,
@@ -72,7 +72,8 @@ impl JointAxis {
         self
     }
 
-    /// Makes the limits, or where it is locked, a spring with a frequency in Hz and a damping ratio, whatever the masses.
+    /// Makes the limits, or where it is locked, a spring with a frequency in Hz and a damping ratio,
+    /// whatever the masses.
     pub const fn with_soft_limits(mut self, frequency: Scalar, damping_ratio: Scalar) -> Self {
         self.softness = JointSoftness::Spring { frequency, damping_ratio };
         self

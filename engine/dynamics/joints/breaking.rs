@@ -10,9 +10,9 @@ use crate::math::{AngularVector, Scalar, Vector};
 
 /// The load above which the joint of its entity breaks. Beyond Avian.
 ///
-/// At the end of a step the joint's [`JointForces`], which the component brings along, are compared with it. A joint that bears
-/// more gets [`JointDisabled`](super::JointDisabled) and is reported by [`JointBroken`]: it has no effect from the next step on. Removing
-/// [`JointDisabled`](super::JointDisabled) mends it.
+/// At the end of a step the joint's [`JointForces`], which the component brings along, are compared with it.
+/// A joint that bears more gets [`JointDisabled`](super::JointDisabled) and is reported by [`JointBroken`]:
+/// it has no effect from the next step on. Removing [`JointDisabled`](super::JointDisabled) mends it.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -34,8 +34,8 @@ use crate::math::{AngularVector, Scalar, Vector};
 pub struct JointBreakThreshold {
     /// The greatest force that the joint bears, in N. [`Scalar::INFINITY`] for any; NaN counts as that.
     pub force: Scalar,
-    /// The greatest torque that the joint bears, in N·m, besides that of the force at the anchor. [`Scalar::INFINITY`] for any;
-    /// NaN counts as that.
+    /// The greatest torque that the joint bears, in N·m, besides that of the force at the anchor.
+    /// [`Scalar::INFINITY`] for any; NaN counts as that.
     pub torque: Scalar,
 }
 
@@ -68,11 +68,12 @@ impl JointBreakThreshold {
     }
 }
 
-/// A joint broke, and has [`JointDisabled`](super::JointDisabled) now. Written as a message, and triggered at the joint's entity.
+/// A joint broke, and has [`JointDisabled`](super::JointDisabled) now. Written as a message, and triggered at
+/// the joint's entity.
 ///
 /// Breaks are sent at the end of a step, in
-/// [`CollisionEventSystems`](crate::collision::narrow_phase::CollisionEventSystems): the messages, then the triggers, in the
-/// order of the joints in the tables of the ECS.
+/// [`CollisionEventSystems`](crate::collision::narrow_phase::CollisionEventSystems): the messages, then the
+/// triggers, in the order of the joints in the tables of the ECS.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct JointBroken {
     /// The joint's entity.

@@ -1,4 +1,5 @@
-//! Joints that tie a coordinate of one body to one of another: gears, racks, pulleys. How they become couplings of the kernel.
+//! Joints that tie a coordinate of one body to one of another: gears, racks, pulleys. How they become
+//! couplings of the kernel.
 
 use kernel::{
     math as k,
@@ -25,7 +26,8 @@ pub(crate) enum CoupledEnd {
     Distance([Vector; 2]),
 }
 
-/// The settings of a coupling: the coordinate at the first body and `ratio` times the one at the second keep their sum.
+/// The settings of a coupling: the coordinate at the first body and `ratio` times the one at the second
+/// keep their sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coupling {
     pub(crate) ends: [CoupledEnd; 2],

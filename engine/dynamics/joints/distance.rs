@@ -21,8 +21,8 @@ use crate::math::{Scalar, Vector};
 
 /// Keeps a point of one body within a range of distances from a point of another. The bodies turn freely.
 ///
-/// With one distance it is a rod, with a compliance a spring, with a greatest distance only a rope. A distance of 0, the
-/// default, holds the points together.
+/// With one distance it is a rod, with a compliance a spring, with a greatest distance only a rope. A
+/// distance of 0, the default, holds the points together.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -65,7 +65,8 @@ impl DistanceJoint {
         }
     }
 
-    /// A rope: the origins of two bodies are no further apart than a length in metres, and may come nearer. Beyond Avian.
+    /// A rope: the origins of two bodies are no further apart than a length in metres, and may come nearer.
+    /// Beyond Avian.
     pub const fn rope(body1: Entity, body2: Entity, length: Scalar) -> Self {
         Self::new(body1, body2).with_limits(0.0, length)
     }
@@ -112,7 +113,8 @@ impl DistanceJoint {
         self
     }
 
-    /// Sets the least distance, in metres. A greatest distance below it is lifted: the points may be any distance apart.
+    /// Sets the least distance, in metres. A greatest distance below it is lifted: the points may be any
+    /// distance apart.
     pub const fn with_min_distance(mut self, min: Scalar) -> Self {
         self.limits.min = min;
         if self.limits.max < min {

@@ -11,10 +11,11 @@ use crate::{
     math::Scalar,
 };
 
-/// How far the locked axes and limits of the joint are off at the end of the last step. Add the component to have it written.
-/// Beyond Avian.
+/// How far the locked axes and limits of the joint are off at the end of the last step. Add the component to
+/// have it written. Beyond Avian.
 ///
-/// Of several axes it is the root of the sum of squares. Both numbers are zero while the joint takes no part in the simulation.
+/// Of several axes it is the root of the sum of squares. Both numbers are zero while the joint takes no part
+/// in the simulation.
 ///
 /// ```
 /// # use avian::prelude::*;

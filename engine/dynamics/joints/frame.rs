@@ -9,8 +9,8 @@ use crate::{math::Vector, physics_transform::Rotation};
 
 /// A frame of a joint on one of its bodies: a point, and the directions of axes there.
 ///
-/// Given [`FromGlobal`](JointAnchor::FromGlobal), it becomes local at the start of the first step in which both bodies are
-/// there. A body that moves later takes its frame with it.
+/// Given [`FromGlobal`](JointAnchor::FromGlobal), it becomes local at the start of the first step in which
+/// both bodies are there. A body that moves later takes its frame with it.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -154,7 +154,8 @@ impl JointAnchor {
 pub enum JointBasis {
     /// The rotation from the joint's axes to the body's.
     Local(Rot),
-    /// The rotation from the joint's axes to the world's. It becomes [`Local`](Self::Local) in the first step.
+    /// The rotation from the joint's axes to the world's. It becomes [`Local`](Self::Local) in
+    /// the first step.
     FromGlobal(Rot),
 }
 

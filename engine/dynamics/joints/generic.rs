@@ -19,10 +19,11 @@ use super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds two bodies as its axes say: each is free, locked, limited, sprung or driven on its own. All are free at first. Beyond
-/// Avian.
+/// Holds two bodies as its axes say: each is free, locked, limited, sprung or driven on its own. All are free
+/// at first. Beyond Avian.
 ///
-/// The other joints are settings of this one. Coordinates are those of the second frame in the first: [`JointCoordinate`].
+/// The other joints are settings of this one. Coordinates are those of the second frame in the first:
+/// [`JointCoordinate`].
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -106,8 +107,8 @@ impl GenericJoint {
         self
     }
 
-    /// Sets the motor of an axis: a [`LinearMotor`](super::LinearMotor), an [`AngularMotor`](super::AngularMotor) or an
-    /// [`AxisMotor`].
+    /// Sets the motor of an axis: a [`LinearMotor`](super::LinearMotor), an
+    /// [`AngularMotor`](super::AngularMotor) or an [`AxisMotor`].
     pub fn with_motor(mut self, coordinate: JointCoordinate, motor: impl Into<AxisMotor>) -> Self {
         self.axis_mut(coordinate).motor = motor.into();
         self

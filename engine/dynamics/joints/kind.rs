@@ -1,8 +1,8 @@
 //! A kind of joint, and how it becomes a joint of the kernel.
 //!
-//! The kernel knows one joint: two frames, and for each coordinate of the second frame in the first whether it is free, limited
-//! or driven. A kind is a choice of these settings. Where it has an axis, the frames are turned so that their x axis is
-//! that axis.
+//! The kernel knows one joint: two frames, and for each coordinate of the second frame in the first whether
+//! it is free, limited or driven. A kind is a choice of these settings. Where it has an axis, the frames are
+//! turned so that their x axis is that axis.
 
 use bevy_ecs::{
     change_detection::Mut,
@@ -125,7 +125,8 @@ macro_rules! own_frames {
 
 pub(super) use own_frames;
 
-/// The kernel's joint for a kind whose frames are local, between the bodies with these ids. `None` if a frame is global.
+/// The kernel's joint for a kind whose frames are local, between the bodies with these ids. `None` if a
+/// frame is global.
 pub(crate) fn definition(
     joint: &(impl JointKind + ?Sized),
     bodies: [u32; 2],

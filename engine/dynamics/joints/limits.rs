@@ -29,8 +29,8 @@ impl DistanceLimit {
         Self { min, max }
     }
 
-    /// The direction in which the second of two points has to move to be within the limits, and how far, in metres. Both
-    /// are zero within them.
+    /// The direction in which the second of two points has to move to be within the limits, and how far, in
+    /// metres. Both are zero within them.
     ///
     /// `separation` is the vector from the first point to the second.
     pub fn compute_correction(&self, separation: Vector) -> (Vector, Scalar) {
@@ -42,8 +42,8 @@ impl DistanceLimit {
         (separation * (-excess.signum() / distance), excess.abs())
     }
 
-    /// How far the second of two points has to move along an axis of unit length to be within the limits, as a vector in
-    /// metres.
+    /// How far the second of two points has to move along an axis of unit length to be within the limits, as
+    /// a vector in metres.
     pub fn compute_correction_along_axis(&self, separation: Vector, axis: Vector) -> Vector {
         axis * -self.excess(separation.dot(axis))
     }
@@ -56,7 +56,8 @@ impl DistanceLimit {
 
 /// The least and the greatest value of an angle, in radians, counter-clockwise.
 ///
-/// Angles are those of the second body relative to the first. They may be beyond a full turn: revolute joints count turns.
+/// Angles are those of the second body relative to the first. They may be beyond a full turn: revolute
+/// joints count turns.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -15,8 +15,8 @@
 //! | [`MouseJoint`] | everything: it pulls a body to the pose of its entity |
 //! | `SphericalJoint` (3D) | all turns about a point, with limits of swing and twist |
 //!
-//! Beside it may be [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`], [`JointForces`], [`JointError`] and
-//! [`JointBreakThreshold`]. [`JointSolver`] chooses how all are solved.
+//! Beside it may be [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`], [`JointForces`],
+//! [`JointError`] and [`JointBreakThreshold`]. [`JointSolver`] chooses how all are solved.
 //!
 //! ```
 //! # use avian::{math::Vector, prelude::*};
@@ -29,14 +29,16 @@
 //! }
 //! ```
 //!
-//! A joint acts while both its entities are bodies in the simulation, in whatever order all three were spawned. Its fields may
-//! change at any time, the bodies too. One that cannot act, because its bodies are one or its numbers are not finite, is
-//! reported once, and acts as soon as it can. Bodies of a joint are in one island: they sleep and wake together.
+//! A joint acts while both its entities are bodies in the simulation, in whatever order all three were
+//! spawned. Its fields may change at any time, the bodies too. One that cannot act, because its bodies are
+//! one or its numbers are not finite, is reported once, and acts as soon as it can. Bodies of a joint are in
+//! one island: they sleep and wake together.
 //!
 //! # Compliance
 //!
-//! A compliance of 0 is rigid: it gives way as little as the substeps resolve. A compliance of α gives way by α times the force
-//! or torque, without damping of its own: it is a spring of stiffness 1/α. [`JointDamping`] damps it.
+//! A compliance of 0 is rigid: it gives way as little as the substeps resolve. A compliance of α gives way
+//! by α times the force or torque, without damping of its own: it is a spring of stiffness 1/α.
+//! [`JointDamping`] damps it.
 
 mod axis;
 mod breaking;
@@ -95,8 +97,9 @@ use bevy_ecs::schedule::SystemSet;
 /// System sets of joints.
 #[derive(SystemSet, Clone, Debug, Hash, PartialEq, Eq)]
 pub enum JointSystems {
-    /// Between [`SolverSystems::PrepareSolverBodies`](super::solver::schedule::SolverSystems::PrepareSolverBodies) and
-    /// [`SolverSystems::PrepareJoints`](super::solver::schedule::SolverSystems::PrepareJoints). Frames are local by then: they
-    /// are computed at the start of the step, where joints enter.
+    /// Between
+    /// [`SolverSystems::PrepareSolverBodies`](super::solver::schedule::SolverSystems::PrepareSolverBodies)
+    /// and [`SolverSystems::PrepareJoints`](super::solver::schedule::SolverSystems::PrepareJoints). Frames
+    /// are local by then: they are computed at the start of the step, where joints enter.
     PrepareLocalFrames,
 }

@@ -8,8 +8,8 @@ use crate::math::Scalar;
 
 /// How strongly a motor pulls towards its target position and velocity.
 ///
-/// The force is k (target position − position) + c (target velocity − velocity), up to the motor's maximum. It is integrated
-/// implicitly, so large coefficients do not make it unstable.
+/// The force is k (target position − position) + c (target velocity − velocity), up to the motor's maximum.
+/// It is integrated implicitly, so large coefficients do not make it unstable.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -165,7 +165,8 @@ motor! {
 }
 
 motor! {
-    /// A motor along or about an axis of a [`GenericJoint`](super::GenericJoint): a [`LinearMotor`] or an [`AngularMotor`].
+    /// A motor along or about an axis of a [`GenericJoint`](super::GenericJoint): a [`LinearMotor`] or an
+    /// [`AngularMotor`].
     AxisMotor, max_effort, with_max_effort, velocity in "m/s or rad/s", position in "metres or radians",
     "force in N, or torque in N·m"
 }

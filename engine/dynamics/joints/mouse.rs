@@ -23,15 +23,16 @@ use crate::{
     math::{Scalar, Vector},
 };
 
-/// Pulls a point of a body to where this entity is, by a damped spring with a greatest force: to drag bodies with the mouse, or
-/// to carry them before a camera. Beyond Avian.
+/// Pulls a point of a body to where this entity is, by a damped spring with a greatest force: to drag bodies
+/// with the mouse, or to carry them before a camera. Beyond Avian.
 ///
 /// The pose of the joint's own entity is the target: move it by its `Transform` or
-/// [`Position`](crate::physics_transform::Position) in any frame, or make it the child of another entity. For that the entity
-/// is a kinematic body. With a [`max_torque`](Self::max_torque) the body turns to the entity's rotation, too.
+/// [`Position`](crate::physics_transform::Position) in any frame, or make it the child of another entity. For
+/// that the entity is a kinematic body. With a [`max_torque`](Self::max_torque) the body turns to the
+/// entity's rotation, too.
 ///
-/// To let another body be dragged, change [`body`](Self::body) or insert the component again. An entity that overwrites the
-/// component in place with a new one has no effect, as the new one does not know its entity.
+/// To let another body be dragged, change [`body`](Self::body) or insert the component again. An entity that
+/// overwrites the component in place with a new one has no effect, as the new one does not know its entity.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};

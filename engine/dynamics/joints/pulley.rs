@@ -17,10 +17,11 @@ use super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Hangs two bodies on the ends of a rope over two pulleys in the world: as one goes up, the other goes down. Beyond Avian.
+/// Hangs two bodies on the ends of a rope over two pulleys in the world: as one goes up, the other goes down.
+/// Beyond Avian.
 ///
-/// The distance of the first body from its pulley, and `ratio` times that of the second from its own, are together no longer than
-/// the rope. The rope may be slack, and does not stop an end at its pulley.
+/// The distance of the first body from its pulley, and `ratio` times that of the second from its own, are
+/// together no longer than the rope. The rope may be slack, and does not stop an end at its pulley.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -48,17 +49,19 @@ pub struct PulleyJoint {
     pub anchor2: JointAnchor,
     /// The pulleys of the first and of the second body, in the world, in metres.
     pub pulleys: [Vector; 2],
-    /// The weight of the second distance: 2 for a block and tackle, in which the second body moves half as far. Not 0.
+    /// The weight of the second distance: 2 for a block and tackle, in which the second body moves half
+    /// as far. Not 0.
     pub ratio: Scalar,
-    /// The length of the rope in metres. `None`, the default, is as long as it has to be where the bodies are as the joint
-    /// begins to act.
+    /// The length of the rope in metres. `None`, the default, is as long as it has to be where the bodies are
+    /// as the joint begins to act.
     pub length: Option<Scalar>,
     /// How far the rope gives way, in m/N. 0 for not at all.
     pub compliance: Scalar,
 }
 
 impl PulleyJoint {
-    /// A rope between the origins of two bodies over pulleys at two points in the world, which is taut where the bodies are.
+    /// A rope between the origins of two bodies over pulleys at two points in the world, which is taut where
+    /// the bodies are.
     pub const fn new(body1: Entity, body2: Entity, pulleys: [Vector; 2]) -> Self {
         Self {
             body1,

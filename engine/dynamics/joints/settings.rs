@@ -88,15 +88,15 @@ impl JointForces {
         self.force
     }
 
-    /// The torque on the second body about the world's axes, in N·m, besides that of the force at the anchor. The first body
-    /// gets the opposite.
+    /// The torque on the second body about the world's axes, in N·m, besides that of the force at the anchor.
+    /// The first body gets the opposite.
     pub const fn torque(&self) -> AngularVector {
         self.torque
     }
 
-    /// The force of the motor in N, or its torque in N·m. Positive if it pushes towards greater positions. Of a motor that turns
-    /// about any axis it is the amount. Of gears, racks and pulleys it is the torque or the force on the first body along its
-    /// coordinate: negative where a rope pulls.
+    /// The force of the motor in N, or its torque in N·m. Positive if it pushes towards greater positions. Of
+    /// a motor that turns about any axis it is the amount. Of gears, racks and pulleys it is the torque or
+    /// the force on the first body along its coordinate: negative where a rope pulls.
     pub const fn motor_force(&self) -> Scalar {
         self.motor_force
     }

@@ -132,13 +132,13 @@ fn hold(
         (Some(_), Some(held)) => Ok(held.id),
         (Some(coupling), None) => {
             let poses = found.map(|(_, position, rotation)| (position.0, *rotation));
-            table.add_coupling(&mut tables.link(), coupling.definition(bodies, poses))
+            table.add_coupling(&mut tables.contact_manager(), coupling.definition(bodies, poses))
         }
         (None, held) => {
             let Some(def) = definition(kind, bodies, damping) else { return Ok(()) };
             match held {
-                Some(held) => table.set(&mut tables.link(), held.id, def).map(|()| held.id),
-                None => table.add(&mut tables.link(), def),
+                Some(held) => table.set(&mut tables.contact_manager(), held.id, def).map(|()| held.id),
+                None => table.add(&mut tables.contact_manager(), def),
             }
         }
     };

@@ -20,14 +20,14 @@ use kernel::solver as k;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub enum JointSolver {
-    /// Joints that form trees of three and more (chains, bridges, ragdolls) are solved at once, all others one by one. Trees
-    /// bear loads of 1,000 times their own mass.
+    /// Joints that form trees of three and more (chains, bridges, ragdolls) are solved at once, all others
+    /// one by one. Trees bear loads of 1,000 times their own mass.
     #[default]
     Auto,
     /// One by one. Where heavy bodies hang on light ones, joints open.
     Rows,
-    /// Trees are solved at once and without softness, from one joint on: for cranes and machines, which bend by less than a
-    /// millimetre. Light bodies that swing fast and hold heavy ones may gain energy.
+    /// Trees are solved at once and without softness, from one joint on: for cranes and machines, which bend
+    /// by less than a millimetre. Light bodies that swing fast and hold heavy ones may gain energy.
     Rigid,
 }
 

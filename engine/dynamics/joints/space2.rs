@@ -69,7 +69,8 @@ pub enum JointCoordinate {
     X = X as isize,
     /// Along the first frame's y axis, in m.
     Y = Y as isize,
-    /// The angle from the first frame to the second, counter-clockwise, in rad. Between limits it counts turns.
+    /// The angle from the first frame to the second, counter-clockwise, in rad. Between limits it
+    /// counts turns.
     Angle = ANGLE as isize,
 }
 

@@ -54,8 +54,8 @@ pub(super) fn isometry(translation: Vector, rotation: Rot) -> Isometry {
     Isometry3d::new(translation.f32(), rotation.f32())
 }
 
-/// The rotation that takes the x axis to an axis; not finite if that has no direction. The turn about the axis depends on
-/// the axis only.
+/// The rotation that takes the x axis to an axis; not finite if that has no direction. The turn about the
+/// axis depends on the axis only.
 pub(super) fn turn_to(axis: Vector) -> k::Rot {
     let turn = match axis.try_normalize() {
         Some(axis) => orthonormal_basis_from_vec(axis),
@@ -64,8 +64,8 @@ pub(super) fn turn_to(axis: Vector) -> k::Rot {
     Rotation(turn).to_kernel().admitted()
 }
 
-/// The rotation that takes the x axis to an axis, and the y axis to what a second one has across it; not finite if both span no
-/// plane.
+/// The rotation that takes the x axis to an axis, and the y axis to what a second one has across it; not
+/// finite if both span no plane.
 pub(super) fn turn_to_plane(x: Vector, y: Vector) -> k::Rot {
     let along = x.try_normalize();
     let normal = along.and_then(|along| along.cross(y).try_normalize());
@@ -94,7 +94,8 @@ pub enum JointCoordinate {
     Z = Z as isize,
     /// The angle about the x axes, in rad. Between limits it counts turns.
     Twist = TWIST as isize,
-    /// The part about the first frame's y axis of the swing from the first x axis to the second, as a rotation vector, in rad.
+    /// The part about the first frame's y axis of the swing from the first x axis to the second, as a
+    /// rotation vector, in rad.
     SwingY = SWING_Y as isize,
     /// The part about the first frame's z axis of that swing, in rad.
     SwingZ = SWING_Z as isize,

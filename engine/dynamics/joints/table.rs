@@ -12,7 +12,8 @@ use crate::{
     noted::Noted,
 };
 
-/// All joints that are neither disabled nor despawned, by entity, and those that may have changed since the last step.
+/// All joints that are neither disabled nor despawned, by entity, and those that may have changed since
+/// the last step.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Joints {
     /// Entities whose joint may have to enter, leave or change.
@@ -148,7 +149,7 @@ impl JointTables<'_> {
         if held.is_apart {
             tables.let_collide(held.bodies);
         }
-        let removed = self.solver.kernel.joints.remove(&mut tables.link(), held.id);
+        let removed = self.solver.kernel.joints.remove(&mut tables.contact_manager(), held.id);
         debug_assert!(removed.is_ok(), "{joint} has a joint in the kernel: {removed:?}");
     }
 

@@ -8,12 +8,12 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::{Friction, Restitution};
 use crate::math::Vector;
 
-/// Materials of single facets of a collider, in place of its [`Friction`] and [`Restitution`]: ice and rubber, or a conveyor
-/// belt, in one mesh.
+/// Materials of single facets of a collider, in place of its [`Friction`] and [`Restitution`]: ice and
+/// rubber, or a conveyor belt, in one mesh.
 ///
-/// The facets are the triangles (in 2D the segments) of a mesh, polyline or height field and the parts of a compound, in the
-/// order of [`Collider::parts`]. The component has no effect on convex shapes and voxels. Insert it on the entity of the
-/// collider, not of its body.
+/// The facets are the triangles (in 2D the segments) of a mesh, polyline or height field and the parts of a
+/// compound, in the order of [`Collider::parts`]. The component has no effect on convex shapes and voxels.
+/// Insert it on the entity of the collider, not of its body.
 ///
 /// Contacts with facets of different materials have a manifold for each. Changes count from the next step on.
 ///
@@ -45,8 +45,8 @@ use crate::math::Vector;
 pub struct FacetMaterials {
     /// The materials, at most 255.
     pub materials: Vec<FacetMaterial>,
-    /// The index in `materials` of each facet. Facets without one, and those whose index does not exist, have the material of
-    /// the collider.
+    /// The index in `materials` of each facet. Facets without one, and those whose index does not exist, have
+    /// the material of the collider.
     pub facets: Vec<u8>,
 }
 
@@ -63,8 +63,8 @@ pub struct FacetMaterial {
     pub friction: Friction,
     /// The restitution.
     pub restitution: Restitution,
-    /// The velocity at which friction carries what lies on the facets, in the collider's frame, m/s. Only what lies in the
-    /// tangent plane counts.
+    /// The velocity at which friction carries what lies on the facets, in the collider's frame, m/s. Only
+    /// what lies in the tangent plane counts.
     pub tangent_velocity: Vector,
 }
 

@@ -37,13 +37,14 @@ use crate::physics_transform::{Position, Rotation};
 
 /// Makes an entity a rigid body of a type.
 ///
-/// The component is immutable: to change the type, insert another `RigidBody`. The engine then observes changes, and
-/// need not scan all bodies. Contacts, joints, velocities and all other state survive the change.
+/// The component is immutable: to change the type, insert another `RigidBody`. The engine then
+/// observes changes, and need not scan all bodies. Contacts, joints, velocities and all other state
+/// survive the change.
 ///
 /// A dynamic body needs mass: from colliders on itself or its descendants (see
 /// [`ColliderDensity`](mass_properties::components::ColliderDensity)), or from
-/// [`Mass`](mass_properties::components::Mass) and its siblings. A body without mass falls, but contacts do not move
-/// it; the engine warns once.
+/// [`Mass`](mass_properties::components::Mass) and its siblings. A body without mass falls, but contacts do
+/// not move it; the engine warns once.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -104,10 +105,12 @@ impl RigidBody {
     }
 }
 
-/// Takes a body out of the simulation: it does not move by itself, its colliders touch nothing, its joints have no effect,
-/// and bodies resting on it wake. Its components keep their values. Spatial queries find its colliders.
+/// Takes a body out of the simulation: it does not move by itself, its colliders touch nothing, its joints
+/// have no effect, and bodies resting on it wake. Its components keep their values. Spatial queries find
+/// its colliders.
 ///
-/// Below another entity in the hierarchy it keeps its `Transform` and moves with that entity: so a body can be carried.
+/// Below another entity in the hierarchy it keeps its `Transform` and moves with that entity: so a body
+/// can be carried.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -233,9 +236,9 @@ pub struct LinearDamping(pub Scalar);
 )]
 pub struct AngularDamping(pub Scalar);
 
-/// Dominance in contacts between dynamic bodies: the body with the higher value acts as if it had infinite mass. Bodies
-/// with equal dominance push each other by their masses. 0 by default. Static and kinematic bodies dominate all dynamic
-/// ones.
+/// Dominance in contacts between dynamic bodies: the body with the higher value acts as if it had infinite
+/// mass. Bodies with equal dominance push each other by their masses. 0 by default. Static and kinematic
+/// bodies dominate all dynamic ones.
 #[derive(
     Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, From, PartialEq, Eq, PartialOrd, Ord,
 )]

@@ -69,8 +69,8 @@ pub struct DefaultRestitution(pub Restitution);
 
 /// Friction of a surface: the coefficients of Coulomb's law, `|tangent force| ≤ μ · normal force`.
 ///
-/// Usual values are between 0 (ice) and 1 (rubber). Larger ones are allowed, negative ones count as 0. On a body it
-/// applies to all colliders of the body without their own. [`DefaultFriction`] applies to all others.
+/// Usual values are between 0 (ice) and 1 (rubber). Larger ones are allowed, negative ones count as 0. On a
+/// body it applies to all colliders of the body without their own. [`DefaultFriction`] applies to all others.
 ///
 /// The solver uses the dynamic coefficient only.
 ///
@@ -153,8 +153,8 @@ impl From<Scalar> for Friction {
     }
 }
 
-/// Restitution of a surface: the ratio of separation speed to approach speed, from 0 (the default, no bounce) to 1
-/// (full bounce).
+/// Restitution of a surface: the ratio of separation speed to approach speed, from 0 (the default, no bounce)
+/// to 1 (full bounce).
 ///
 /// Slow impacts do not bounce, see
 /// [`SolverConfig::restitution_threshold`](crate::dynamics::solver::SolverConfig::restitution_threshold).

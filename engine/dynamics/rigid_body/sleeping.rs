@@ -1,5 +1,5 @@
-//! Components and settings of sleeping. An island, a group of touching bodies, falls asleep when all of them have
-//! rested for a while. It then costs nothing until something wakes it.
+//! Components and settings of sleeping. An island, a group of touching bodies, falls asleep when all of them
+//! have rested for a while. It then costs nothing until something wakes it.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -11,8 +11,8 @@ use derive_more::From;
 /// Marks a sleeping body. Inserting or removing it puts the body's island to sleep or wakes it.
 ///
 /// A sleeping body keeps its pose, [`LinearVelocity`](super::LinearVelocity) and
-/// [`AngularVelocity`](super::AngularVelocity), and wakes with these velocities, so that a stack continues as if it had
-/// not slept. Setting another velocity wakes it, unless the marker is inserted in the same step.
+/// [`AngularVelocity`](super::AngularVelocity), and wakes with these velocities, so that a stack continues as
+/// if it had not slept. Setting another velocity wakes it, unless the marker is inserted in the same step.
 ///
 /// The marker has sparse-set storage, so that falling asleep does not move the body to another table.
 ///
@@ -52,7 +52,8 @@ pub struct SleepingDisabled;
     reflect(Serialize, Deserialize)
 )]
 pub struct SleepThreshold {
-    /// Linear speed in m/s, scaled by the [`PhysicsLengthUnit`](crate::prelude::PhysicsLengthUnit). 0.15 by default.
+    /// Linear speed in m/s, scaled by the [`PhysicsLengthUnit`](crate::prelude::PhysicsLengthUnit).
+    /// 0.15 by default.
     pub linear: f32,
     /// Angular speed in rad/s. 0.15 by default.
     pub angular: f32,
@@ -68,8 +69,8 @@ impl Default for SleepThreshold {
 #[deprecated(since = "0.4.0", note = "renamed to `SleepThreshold`")]
 pub type SleepingThreshold = SleepThreshold;
 
-/// How long a body has been at rest, in seconds. The engine updates it for awake bodies. An app may set it, for
-/// instance to 0.
+/// How long a body has been at rest, in seconds. The engine updates it for awake bodies. An app may set it,
+/// for instance to 0.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -83,8 +84,8 @@ pub struct SleepTimer(pub f32);
 #[deprecated(since = "0.4.0", note = "renamed to `SleepTimer`")]
 pub type TimeSleeping = SleepTimer;
 
-/// How long all bodies of an island must be at rest before it falls asleep, in seconds. 0.5 by default. The minimum is
-/// four steps.
+/// How long all bodies of an island must be at rest before it falls asleep, in seconds. 0.5 by default. The
+/// minimum is four steps.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 #[cfg_attr(

@@ -65,14 +65,15 @@ pub struct RigidBodyQuery {
 /// The methods that both items have.
 macro_rules! body_methods {
     () => {
-        /// The velocity in m/s of a point of the body, relative to the centre of mass and along the world's axes.
+        /// The velocity in m/s of a point of the body, relative to the centre of mass and along the
+        /// world's axes.
         pub fn velocity_at_point(&self, point: Vector) -> Vector {
             let spin = angular_to_kernel(self.angular_velocity.0);
             self.linear_velocity.0 + vector_from_kernel(spin.cross(vector_to_kernel(point)))
         }
 
-        /// The inverse mass along each of the world's axes, in 1/kg: zero along locked axes, and for bodies that are not
-        /// dynamic.
+        /// The inverse mass along each of the world's axes, in 1/kg: zero along locked axes, and for bodies
+        /// that are not dynamic.
         pub fn effective_inverse_mass(&self) -> Vector {
             if !self.rb.is_dynamic() {
                 return Vector::ZERO;
@@ -86,7 +87,8 @@ macro_rules! body_methods {
             if self.rb.is_dynamic() { *self.angular_inertia } else { ComputedAngularInertia::INFINITY }
         }
 
-        /// The angular inertia about the world's axes: infinite about locked axes, and for bodies that are not dynamic.
+        /// The angular inertia about the world's axes: infinite about locked axes, and for bodies that
+        /// are not dynamic.
         pub fn effective_global_angular_inertia(&self) -> ComputedAngularInertia {
             if !self.rb.is_dynamic() {
                 return ComputedAngularInertia::INFINITY;

@@ -1,5 +1,5 @@
-//! Settings of the solver: the length unit, [`SolverConfig`], and the softness of contacts derived from it in every
-//! step.
+//! Settings of the solver: the length unit, [`SolverConfig`], and the softness of contacts derived from it
+//! in every step.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -18,16 +18,17 @@ use crate::{
     schedule::{Physics, TimePrecisionAdjusted},
 };
 
-/// Overlap of resting contacts, times the [`PhysicsLengthUnit`]. Other tolerances of contacts are multiples of it. With
-/// less, resting contacts flicker; with more, overlap is visible.
+/// Overlap of resting contacts, times the [`PhysicsLengthUnit`]. Other tolerances of contacts are multiples
+/// of it. With less, resting contacts flicker; with more, overlap is visible.
 pub(crate) const LINEAR_SLOP: f64 = 0.005;
 
 /// Roughly the length of a metre in the units of the app: the size of a typical object.
 ///
-/// Tolerances and thresholds that are lengths or speeds are multiplied by it, so that a 2D game with characters of 100
-/// pixels is as stable as one with characters of 1 unit. It does not scale positions, velocities or
-/// [`Gravity`](crate::dynamics::integrator::Gravity). 1 by default. Set it before anything moves. Where gravity and the
-/// sizes of all that moves say that it was forgotten, `LengthUnitCheckPlugin` warns once.
+/// Tolerances and thresholds that are lengths or speeds are multiplied by it, so that a 2D game with
+/// characters of 100 pixels is as stable as one with characters of 1 unit. It does not scale positions,
+/// velocities or [`Gravity`](crate::dynamics::integrator::Gravity). 1 by default. Set it before anything
+/// moves. Where gravity and the sizes of all that moves say that it was forgotten,
+/// `LengthUnitCheckPlugin` warns once.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -77,21 +78,22 @@ impl PhysicsLengthUnit {
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Resource, Default, Debug, PartialEq)]
 pub struct SolverConfig {
-    /// The damping ratio ζ of overlap recovery. 10 by default. Above 1 overlap is removed without oscillation; lower
-    /// values are springier.
+    /// The damping ratio ζ of overlap recovery. 10 by default. Above 1 overlap is removed without
+    /// oscillation; lower values are springier.
     pub contact_damping_ratio: Scalar,
-    /// The frequency of overlap recovery, as a multiple of the highest one that the timestep resolves. 1.5 by default.
-    /// Higher is stiffer, but jitters.
+    /// The frequency of overlap recovery, as a multiple of the highest one that the timestep resolves. 1.5 by
+    /// default. Higher is stiffer, but jitters.
     pub contact_frequency_factor: Scalar,
-    /// Maximum speed at which overlap is pushed out, in LU/s. 4 by default. Higher values shoot overlapping bodies
-    /// apart.
+    /// Maximum speed at which overlap is pushed out, in LU/s. 4 by default. Higher values shoot overlapping
+    /// bodies apart.
     pub max_overlap_solve_speed: Scalar,
     /// Share of the last step's impulses for the warm start. 1 by default. With 0 stacks sag.
     pub warm_start_coefficient: Scalar,
-    /// Minimum approach speed for restitution, in LU/s. 1 by default. With 0 resting bodies never come to rest.
+    /// Minimum approach speed for restitution, in LU/s. 1 by default. With 0 resting bodies never
+    /// come to rest.
     pub restitution_threshold: Scalar,
-    /// How often impacts are solved after the last substep, for what was stopped by continuous collision detection. 1 by default.
-    /// Impacts within substeps do not depend on it.
+    /// How often impacts are solved after the last substep, for what was stopped by continuous collision
+    /// detection. 1 by default. Impacts within substeps do not depend on it.
     pub restitution_iterations: usize,
 }
 
@@ -118,7 +120,8 @@ impl Default for SolverConfig {
 pub struct ContactSoftnessCoefficients {
     /// For contacts between dynamic bodies.
     pub dynamic: SoftnessCoefficients,
-    /// For contacts of a dynamic body with a static or kinematic one: twice as stiff, so that the ground holds a pile.
+    /// For contacts of a dynamic body with a static or kinematic one: twice as stiff, so that the ground
+    /// holds a pile.
     pub non_dynamic: SoftnessCoefficients,
 }
 
@@ -136,9 +139,9 @@ impl Default for ContactSoftnessCoefficients {
 impl ContactSoftnessCoefficients {
     /// The softness of contacts in a step of `delta_secs` seconds with `substeps` substeps.
     ///
-    /// A spring of frequency f is solved once per substep h, and its target moves once per step dt. Half the step rate,
-    /// 1/(2 dt), is the highest frequency that steps can represent. A quarter of the substep rate, 0.25/h, is the
-    /// highest that the solver integrates well (E. Catto, *Solver2D*, 2024). Hence
+    /// A spring of frequency f is solved once per substep h, and its target moves once per step dt. Half the
+    /// step rate, 1/(2 dt), is the highest frequency that steps can represent. A quarter of the substep rate,
+    /// 0.25/h, is the highest that the solver integrates well (E. Catto, *Solver2D*, 2024). Hence
     ///
     /// ```text
     /// f = factor · min(1/(2 dt), 0.25/h),   h = dt / substeps

@@ -7,8 +7,8 @@ use core::time::Duration;
 
 /// Timers and counters of the solver in the last step.
 ///
-/// While [`SubstepSchedule`](super::schedule::SubstepSchedule) holds only the engine's own systems, all substeps run as
-/// one call, and their time is in [`solve_constraints`](Self::solve_constraints).
+/// While [`SubstepSchedule`](super::schedule::SubstepSchedule) holds only the engine's own systems, all
+/// substeps run as one call, and their time is in [`solve_constraints`](Self::solve_constraints).
 #[derive(Resource, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct SolverDiagnostics {

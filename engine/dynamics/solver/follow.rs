@@ -19,8 +19,8 @@ use crate::{
     schedule::{Physics, TimePrecisionAdjusted},
 };
 
-/// Distance, as a share of the coordinates, and angle in rad up to which a body is at its target: the rounding of a step. What
-/// stands still has to be at rest, so that what lies on it can sleep.
+/// Distance, as a share of the coordinates, and angle in rad up to which a body is at its target: the
+/// rounding of a step. What stands still has to be at rest, so that what lies on it can sleep.
 const ROUNDING: Scalar = 2.0e-6;
 
 /// Components of a body that follows its transform.
@@ -34,8 +34,8 @@ type Follower = (
     &'static ComputedCenterOfMass,
 );
 
-/// Gives each body that follows its transform the velocity that takes it there in this step. A body that the app moved by its
-/// pose stays there and rests.
+/// Gives each body that follows its transform the velocity that takes it there in this step. A body that the
+/// app moved by its pose stays there and rests.
 pub(crate) fn follow_transforms(
     mut followers: Query<Follower>,
     bodies: Res<Bodies>,

@@ -115,7 +115,8 @@ impl<'w, 's> BodyInputContiguousItem<'w, 's> {
 }
 
 impl<'w, 's> MotionInputContiguousItem<'w, 's> {
-    /// Whether no body of the table has such a component. Checking each body would take a quarter of the time.
+    /// Whether no body of the table has such a component. Checking each body would take a
+    /// quarter of the time.
     fn is_none(&self) -> bool {
         let speeds = self.max_speed.is_none() && self.max_angular_speed.is_none();
         let damping = self.linear_damping.is_none() && self.angular_damping.is_none();
@@ -176,8 +177,8 @@ struct Change {
     pushed: bool,
 }
 
-/// Writes a body's components to the table: its pose if it differs from the one the engine wrote, centre of mass, and
-/// velocity. A body that is not finite is reset and disabled.
+/// Writes a body's components to the table: its pose if it differs from the one the engine wrote, centre of
+/// mass, and velocity. A body that is not finite is reset and disabled.
 #[inline]
 fn read_in(entity: Entity, body: &StateInputItem, tables: &mut Tables, commands: &mut Commands) -> Change {
     let id = body.id.0;
@@ -231,8 +232,8 @@ type Watched = (
     Ref<'static, AngularVelocity>,
 );
 
-/// Applies changes of the app to static and sleeping bodies. Moved ones wake the bodies they touch, and wake themselves
-/// if they can.
+/// Applies changes of the app to static and sleeping bodies. Moved ones wake the bodies they touch, and wake
+/// themselves if they can.
 pub(crate) fn wake_changed(
     watched: Query<Watched, With<BodyId>>,
     states: Query<StateInput>,
@@ -243,7 +244,8 @@ pub(crate) fn wake_changed(
     system: SystemChangeTick,
 ) {
     let written = tables.bodies.written;
-    // Bodies put to sleep in this step fell asleep with this velocity and gravity: a level may be spawned asleep.
+    // Bodies put to sleep in this step fell asleep with this velocity and gravity: a level may be
+    // spawned asleep.
     let flipped = tables.bodies.table.flipped_set();
     let mut wake = |entity: Entity| {
         let Ok(body) = states.get(entity) else { return };
@@ -258,11 +260,11 @@ pub(crate) fn wake_changed(
         }
         let change = read_in(entity, &body, &mut tables, &mut commands);
         if change.moved {
-            tables.link().wake_touching(id);
+            tables.contact_manager().wake_touching(id);
         }
         let kept = flipped.contains(id) && tables.bodies.table[id].kind == BodyKind::Dynamic;
         if change.moved || change.pushed && !kept {
-            tables.link().wake_body(id);
+            tables.contact_manager().wake_body(id);
         } else if change.pushed {
             tables.bodies.still(id);
         }
@@ -285,19 +287,19 @@ pub(crate) fn wake_changed(
         return;
     }
     for id in scaled.iter().filter(|id| id.0 != NONE && !flipped.contains(id.0)) {
-        tables.link().wake_body(id.0);
+        tables.contact_manager().wake_body(id.0);
     }
     if gravity.is_changed() {
         for id in (0..tables.bodies.entities.len() as u32).filter(|id| !flipped.contains(*id)) {
             if tables.bodies.table.ids.is_live(id) && tables.bodies.table[id].kind == BodyKind::Dynamic {
-                tables.link().wake_body(id);
+                tables.contact_manager().wake_body(id);
             }
         }
     }
 }
 
-/// A kinematic body is awake exactly while it moves. One whose velocity is zero rests; one with a velocity was woken by
-/// the change.
+/// A kinematic body is awake exactly while it moves. One whose velocity is zero rests; one with a velocity
+/// was woken by the change.
 pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, mut tables: Tables) {
     let at_rest = |entity: Entity| {
         let velocity = query.get(entity).map(|(v, w)| (vector_to_kernel(v.0), angular_to_kernel(w.0)));
@@ -308,15 +310,15 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
     let Bodies { table, entities, .. } = &*tables.bodies;
     ids.extend(table.awake_kinematic().filter(|id| at_rest(entities[*id as usize])));
     for &id in &ids {
-        tables.link().set_kinematic_awake(id, false);
+        tables.contact_manager().set_kinematic_awake(id, false);
         // A resting body has no velocity. With the old one in the table, setting it again would be no change.
         tables.bodies.table.set_velocity(id, Velocity::default());
     }
     tables.bodies.ids = ids;
 }
 
-/// Kinematic bodies that rested when the step began, and got a velocity since: they move in this step. Dynamic ones that
-/// sleep wake in the next.
+/// Kinematic bodies that rested when the step began, and got a velocity since: they move in this step.
+/// Dynamic ones that sleep wake in the next.
 pub(crate) fn wake_kinematic_late(
     query: Query<(Ref<BodyId>, Ref<LinearVelocity>, Ref<AngularVelocity>)>,
     mut tables: Tables,
@@ -346,7 +348,7 @@ pub(crate) fn wake_kinematic_late(
     // The order of entities does not matter.
     woken.sort_unstable();
     for &id in &woken {
-        tables.link().wake_body(id);
+        tables.contact_manager().wake_body(id);
     }
     tables.bodies.ids = woken;
 }
@@ -356,8 +358,8 @@ type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>, Option
 
 /// Reads pose, velocity and rest threshold of every awake body, before the step computes anything from them.
 ///
-/// The thread pool finds the bodies whose components differ from the table, without writing. Those bodies are then read
-/// in the order of ids.
+/// The thread pool finds the bodies whose components differ from the table, without writing. Those bodies are
+/// then read in the order of ids.
 pub(crate) fn read_awake(
     query: Query<(StateInput, RestInput)>,
     (unit, threads): (Res<PhysicsLengthUnit>, Res<Threads>),
@@ -396,7 +398,7 @@ pub(crate) fn read_awake(
         }
         let change = read_in(entity, &body, &mut tables, &mut commands);
         if change.moved {
-            tables.link().wake_touching(id);
+            tables.contact_manager().wake_touching(id);
         }
         if change.moved || change.pushed {
             tables.bodies.table[id].sleep_timer = 0.0;
@@ -458,8 +460,8 @@ fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) ->
 
 /// Gives every awake body a row, and fills it.
 ///
-/// The thread pool walks whole tables of components where most bodies are awake. Where most sleep, the caller looks up
-/// entities. Rows are written by id either way, so the order of entities does not matter.
+/// The thread pool walks whole tables of components where most bodies are awake. Where most sleep, the caller
+/// looks up entities. Rows are written by id either way, so the order of entities does not matter.
 pub(crate) fn gather_bodies(
     query: Query<(BodyInput, MotionInput)>,
     (gravity, threads): (Res<Gravity>, Res<Threads>),

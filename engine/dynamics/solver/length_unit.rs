@@ -1,7 +1,7 @@
 //! A warning where gravity and the sizes of colliders say that the length unit was forgotten.
 //!
-//! Only worlds are told that no app builds on purpose: every collider on a dynamic or kinematic body is out of range, and
-//! gravity agrees. One collider of an ordinary size ends the search.
+//! Only worlds are told that no app builds on purpose: every collider on a dynamic or kinematic body is out
+//! of range, and gravity agrees. One collider of an ordinary size ends the search.
 
 use bevy_ecs::prelude::*;
 use bevy_log::warn;
@@ -20,7 +20,8 @@ use crate::{
 /// How long physics runs before it is judged: the first bodies of a level may be its largest.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Thickness in length units from which no body falls under gravity in metres: a thing of 50 m in every direction.
+/// Thickness in length units from which no body falls under gravity in metres: a thing of 50 m in
+/// every direction.
 const HUGE: Scalar = 50.0;
 
 /// Gravity in length units/s² from which it counts for [`HUGE`] bodies. That of the moon is more.
@@ -35,7 +36,8 @@ const HEAVY: Scalar = 200.0;
 /// Length in length units up to which a body is small where gravity is [`FAINT`]: a coin or a die.
 const SMALL: Scalar = 0.05;
 
-/// Gravity in length units/s² that is less than on any moon that one would stand on: a fiftieth of the earth's.
+/// Gravity in length units/s² that is less than on any moon that one would stand on: a fiftieth
+/// of the earth's.
 const FAINT: Scalar = 0.2;
 
 /// The sizes of colliders, in units of length of the app.
@@ -74,8 +76,8 @@ enum Verdict {
     TooLong,
 }
 
-/// Judges a world by its gravity and the sizes of its moving colliders, all in units of length of the app. `None` if there may
-/// be a reason for them.
+/// Judges a world by its gravity and the sizes of its moving colliders, all in units of length of the app.
+/// `None` if there may be a reason for them.
 fn judge(sizes: Sizes, gravity: Scalar, unit: Scalar) -> Option<Verdict> {
     let Sizes { thinnest, shortest, longest } = sizes;
     if !longest.is_finite() {

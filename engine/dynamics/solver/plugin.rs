@@ -88,11 +88,12 @@ impl KindVisitor for Graphs {
     }
 }
 
-/// Warns once where everything that moves is too large or too small for gravity, so that [`PhysicsLengthUnit`] must have been
-/// forgotten: a 2D game in pixels with a length unit of 1, or a game in metres with one of 100.
+/// Warns once where everything that moves is too large or too small for gravity, so that
+/// [`PhysicsLengthUnit`] must have been forgotten: a 2D game in pixels with a length unit of 1, or a game in
+/// metres with one of 100.
 ///
-/// Looks at the first second of physics at most, and no further once it sees one dynamic or kinematic collider of an ordinary
-/// size. Beyond Avian.
+/// Looks at the first second of physics at most, and no further once it sees one dynamic or kinematic
+/// collider of an ordinary size. Beyond Avian.
 #[cfg(feature = "default-collider")]
 pub struct LengthUnitCheckPlugin;
 

@@ -52,8 +52,8 @@ pub(crate) struct MovedWithin<'w, 's> {
 }
 
 impl MovedWithin<'_, '_> {
-    /// Records the bodies with a row whose pose changed since a tick, if `differs` holds for the previous and the
-    /// current pose of the components.
+    /// Records the bodies with a row whose pose changed since a tick, if `differs` holds for the previous and
+    /// the current pose of the components.
     fn note(&mut self, since: Since, differs: impl Fn(&WorldPose, &WorldPose) -> bool) {
         let Bodies { table, seen, entities, listed, moved_within, .. } = &mut *self.bodies;
         let mut note = |entity: Entity, position: Position, rotation: Rotation| {
@@ -93,8 +93,8 @@ pub(crate) fn note_moved_late(mut moved: MovedWithin, system: SystemChangeTick) 
     moved.note(since, |_, _| true);
 }
 
-/// Keeps bodies that the app moved within the step at the app's pose, plus their displacement in the step. The tables
-/// keep the simulated pose: the next step treats the difference as any other change by the app.
+/// Keeps bodies that the app moved within the step at the app's pose, plus their displacement in the step.
+/// The tables keep the simulated pose: the next step treats the difference as any other change by the app.
 pub(crate) fn keep_moved_within(
     mut poses: Query<(&mut Position, &mut Rotation)>,
     solver: Res<StepSolver>,
@@ -122,8 +122,8 @@ pub(crate) fn keep_moved_within(
 
 /// Adds the displacement of each awake body to its pose, and updates sleep timers.
 ///
-/// A body whose result is not finite keeps its pose, stops, and is disabled with one warning, so that NaN does not
-/// spread.
+/// A body whose result is not finite keeps its pose, stops, and is disabled with one warning, so that NaN
+/// does not spread.
 pub(crate) fn finish_bodies(
     own: Query<&BodyId, (With<CustomPositionIntegration>, Without<RigidBodyDisabled>)>,
     (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
@@ -182,8 +182,8 @@ pub(crate) fn scatter_bodies(
     diagnostics.finalize += start.elapsed();
 }
 
-/// Resets the displacement of a body with [`CustomPositionIntegration`]. Returns its id and sleep timer, by its
-/// velocity.
+/// Resets the displacement of a body with [`CustomPositionIntegration`]. Returns its id and sleep timer, by
+/// its velocity.
 fn keep_in_place(id: u32, solver: &mut Solver, bodies: &Bodies, dt: f32) -> Option<(u32, f32)> {
     let row = if id == NONE { 0 } else { bodies.table.row(id) };
     if row == 0 {

@@ -1,4 +1,5 @@
-//! Soft constraints: a spring given by damping ratio and frequency, and its coefficients for a velocity constraint.
+//! Soft constraints: a spring given by damping ratio and frequency, and its coefficients for a
+//! velocity constraint.
 
 use bevy_reflect::Reflect;
 #[cfg(feature = "serialize")]
@@ -6,10 +7,12 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::{Scalar, TAU};
 
-/// Maximum of both values of [`SoftnessParameters`]: far above what a step resolves, far below where squares overflow.
+/// Maximum of both values of [`SoftnessParameters`]: far above what a step resolves, far below where
+/// squares overflow.
 const LIMIT: Scalar = 1e9;
 
-/// A damped spring, given by frequency and damping ratio instead of stiffness, so that it behaves alike for every mass.
+/// A damped spring, given by frequency and damping ratio instead of stiffness, so that it behaves alike
+/// for every mass.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -30,8 +33,8 @@ fn deserialize_sanitized<'de, D: serde::Deserializer<'de>>(deserializer: D) -> R
 }
 
 impl SoftnessParameters {
-    /// A spring with damping ratio ζ (0 oscillates for ever, 1 returns fastest without oscillation, above 1 creeps) and
-    /// undamped frequency in Hz.
+    /// A spring with damping ratio ζ (0 oscillates for ever, 1 returns fastest without oscillation, above 1
+    /// creeps) and undamped frequency in Hz.
     ///
     /// Negative and NaN values count as 0, values above 10⁹ as 10⁹.
     pub fn new(damping_ratio: Scalar, frequency_hz: Scalar) -> Self {
@@ -55,15 +58,16 @@ impl SoftnessParameters {
 
     /// The coefficients of this spring for a step of `delta_secs` seconds.
     ///
-    /// With h the step and ω the angular frequency (E. Catto, *Soft Constraints*, GDC 2011, and *Solver2D*, 2024),
+    /// With h the step and ω the angular frequency (E. Catto, *Soft Constraints*, GDC 2011, and
+    /// *Solver2D*, 2024),
     ///
     /// ```text
     /// a1 = 2 ζ + h ω      a2 = h ω a1      a3 = 1 / (1 + a2)
     /// bias = ω / a1       mass_scale = a2 a3       impulse_scale = a3
     /// ```
     ///
-    /// Any input is valid: a spring without frequency has no effect, and a step that is zero, negative or NaN counts as
-    /// no step.
+    /// Any input is valid: a spring without frequency has no effect, and a step that is zero, negative or NaN
+    /// counts as no step.
     pub fn compute_coefficients(self, delta_secs: Scalar) -> SoftnessCoefficients {
         let omega = self.angular_frequency;
         if omega == 0.0 {

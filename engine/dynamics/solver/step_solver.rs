@@ -19,8 +19,8 @@ impl Default for StepSolver {
     }
 }
 
-/// The engine's own systems in the schedule of the substeps. While the schedule holds no others and has no run conditions, one call
-/// of the kernel per substep replaces it.
+/// The engine's own systems in the schedule of the substeps. While the schedule holds no others and has no
+/// run conditions, one call of the kernel per substep replaces it.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct OwnSubstepSystems {
     /// Whether bodies are integrated in this schedule, and whether contacts are solved.
@@ -35,8 +35,8 @@ impl OwnSubstepSystems {
         self.systems.push(system.system_type_id());
     }
 
-    /// Whether a schedule holds exactly these systems, without run conditions. False for a schedule that was built already,
-    /// since its conditions cannot be read: running the schedule gives the same bits.
+    /// Whether a schedule holds exactly these systems, without run conditions. False for a schedule that was
+    /// built already, since its conditions cannot be read: running the schedule gives the same bits.
     pub(crate) fn are_all_of(&self, schedule: &Schedule) -> bool {
         if schedule.systems().is_ok() {
             return false;

@@ -13,7 +13,8 @@ pub(super) enum Side {
     B,
 }
 
-/// A reference edge with its unit normal and the incident edge, both in A's frame, and what else the points depend on.
+/// A reference edge with its unit normal and the incident edge, both in A's frame, and what else the
+/// points depend on.
 pub(super) struct Facing {
     pub(super) side: Side,
     pub(super) normal: Vector,
@@ -24,8 +25,8 @@ pub(super) struct Facing {
 }
 
 impl Facing {
-    /// A reference edge of `side` with its normal, in that side's frame. `facing` gives the edge of the other side that faces a
-    /// normal in that other side's frame.
+    /// A reference edge of `side` with its normal, in that side's frame. `facing` gives the edge of the other
+    /// side that faces a normal in that other side's frame.
     #[inline]
     pub(super) fn new(
         side: Side,
@@ -42,8 +43,8 @@ impl Facing {
         Self { side, normal, reference: reference.moved(pose), incident: facing(normal), limits }
     }
 
-    /// Fills `out`. `is_separated` tells that the cores are separated along the reference normal; otherwise a corner is never taken
-    /// for the closest feature.
+    /// Fills `out`. `is_separated` tells that the cores are separated along the reference normal; otherwise a
+    /// corner is never taken for the closest feature.
     #[inline]
     pub(super) fn contact(&self, is_separated: bool, out: &mut LocalManifold) {
         // Lengths are measured from the start of the reference edge, which keeps them small.
@@ -54,8 +55,8 @@ impl Facing {
         let along = offsets.map(|w| w.dot(tangent));
         let height = offsets.map(|w| w.dot(self.normal));
         let nothing = FLAT as f32 * (length + (along[1] - along[0]).abs());
-        // The closest end is the lower one. Of an edge wholly beside the reference it is the end nearer to the corner, since
-        // level edges have no lower end.
+        // The closest end is the lower one. Of an edge wholly beside the reference it is the end nearer to
+        // the corner, since level edges have no lower end.
         let beside = along[1] > length || along[0] < 0.0;
         let end = if beside {
             let corner = self.reference.ends[usize::from(along[1] > length)];
@@ -67,8 +68,8 @@ impl Facing {
 
         let beyond = max(-along[end], along[end] - length);
         if is_separated && beyond > nothing {
-            // Beyond an end of the reference edge either that end faces the incident edge, which is then nearly parallel, or two
-            // corners are closest.
+            // Beyond an end of the reference edge either that end faces the incident edge, which is then
+            // nearly parallel, or two corners are closest.
             let own_end = usize::from(along[end] > 0.0);
             let w = self.incident.ends[end];
             let toward = self.incident.ends[1 - end] - w;
@@ -88,15 +89,16 @@ impl Facing {
         out.normal = self.outward(normal);
     }
 
-    /// Up to two points where the edges face each other, from positions along the reference edge and heights over it. If they
-    /// do not face each other, `end` of the incident edge alone.
+    /// Up to two points where the edges face each other, from positions along the reference edge and heights
+    /// over it. If they do not face each other, `end` of the incident edge alone.
     #[inline]
     fn edges(&self, length: f32, along: [f32; 2], height: [f32; 2], end: usize, out: &mut LocalManifold) {
         out.normal = self.outward(self.normal);
         // The incident edge runs against the reference edge: its end 1 pairs with the start.
         let run = along[0] - along[1];
         let nothing = FLAT as f32 * (length + run.abs());
-        // Ends within rounding above an end of the reference edge are not clipped: the incident edge may be steep.
+        // Ends within rounding above an end of the reference edge are not clipped: the incident edge
+        // may be steep.
         let low = if along[1] < -nothing { 0.0 } else { along[1] };
         let high = if along[0] > length + nothing { length } else { along[0] };
         if high - low > nothing {
@@ -108,7 +110,8 @@ impl Facing {
             self.push(first.0, first.1, at(first.1), out);
             self.push(second.0, second.1, at(second.1), out);
         } else {
-            // An edge is upright or has no length, or the edges touch by rounding with the end that is level with a corner.
+            // An edge is upright or has no length, or the edges touch by rounding with the end that is level
+            // with a corner.
             let end = match (run > nothing, along[0] <= nothing, along[1] >= length - nothing) {
                 (true, true, false) => 0,
                 (true, false, true) => 1,
@@ -118,8 +121,8 @@ impl Facing {
         }
     }
 
-    /// Adds the point at position `t` of the reference edge, where the incident edge is `height` over it, if that is near
-    /// enough. `end` is the end of the reference edge that it is nearer to.
+    /// Adds the point at position `t` of the reference edge, where the incident edge is `height` over it, if
+    /// that is near enough. `end` is the end of the reference edge that it is nearer to.
     #[inline]
     fn push(&self, end: usize, t: f32, height: f32, out: &mut LocalManifold) {
         let separation = height - self.limits.radii[0] - self.limits.radii[1];

@@ -1,5 +1,5 @@
-//! Two cuboids, the most frequent pair. The signs of the offset give the edges to test: four separations are computed, where
-//! polygons need sixteen vertices.
+//! Two cuboids, the most frequent pair. The signs of the offset give the edges to test: four separations are
+//! computed, where polygons need sixteen vertices.
 
 use super::super::{LocalManifold, PairInput};
 use super::clip::{Facing, Side};

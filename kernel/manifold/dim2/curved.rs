@@ -1,7 +1,8 @@
 //! Ellipses against everything else: one point, since two would come and go on a curve.
 //!
-//! Along the best axis the farthest points of both shapes are across from each other. So the side to which they are shifted
-//! tells to which side the axis has to turn, and it is found by bisection. Edges of polygons are axes of their own.
+//! Along the best axis the farthest points of both shapes are across from each other. So the side to which
+//! they are shifted tells to which side the axis has to turn, and it is found by bisection. Edges of polygons
+//! are axes of their own.
 
 use super::super::{LocalManifold, PairInput};
 use super::polygonal::Polygonal;
@@ -55,7 +56,8 @@ impl Pair<'_> {
         self.input.pose.transform(self.b.support(self.input.pose.rotation.inverse_rotate(-normal)))
     }
 
-    /// Fills `out` from a unit normal, a point of A's core and that of B, and A's radii: around its core, and of curvature.
+    /// Fills `out` from a unit normal, a point of A's core and that of B, and A's radii: around its core, and
+    /// of curvature.
     fn push(&self, normal: Vector, [on_a, on_b]: [Vector; 2], radii: [f32; 2], out: &mut LocalManifold) {
         let [radius, curvature] = radii;
         let separation = normal.dot(on_b - on_a) - radius;
@@ -76,8 +78,8 @@ impl Pair<'_> {
         if of_b.0 > of_a.0 { of_b.1 } else { of_a.1 }
     }
 
-    /// The largest separation from a core near the best of the normals that `fan` makes of directions around an ellipse,
-    /// and its normal. Those of a flat ellipse are close together.
+    /// The largest separation from a core near the best of the normals that `fan` makes of directions around
+    /// an ellipse, and its normal. Those of a flat ellipse are close together.
     fn best_in_fan(&self, a: &impl Rounded, fan: impl Fn(Vector) -> Vector) -> (f32, Vector) {
         // A sixteenth of a turn.
         let (directions, step) = (16, Rot { cos: 0.923_879_5, sin: 0.382_683_43 });
@@ -100,7 +102,8 @@ impl Pair<'_> {
         normal.dot(self.lowest(normal) - point)
     }
 
-    /// The normal between two at which the farthest points are across from each other. `point` gives that of A.
+    /// The normal between two at which the farthest points are across from each other. `point`
+    /// gives that of A.
     fn bisect(&self, mut low: Vector, mut high: Vector, point: impl Fn(Vector) -> Vector) -> Vector {
         for _ in 0..ROUNDS {
             let Some((middle, _)) = direction(low + high) else { break };

@@ -53,8 +53,8 @@ impl<'a> Convex<'a> {
         collide_pair(&facet, self.shape, input, out);
     }
 
-    /// Fills `out` with the contact of a segment's side alone, where the shape is over it. `normal` is the segment's, towards
-    /// the shape.
+    /// Fills `out` with the contact of a segment's side alone, where the shape is over it. `normal` is the
+    /// segment's, towards the shape.
     pub fn collide_face(
         &self,
         corners: [Vector; 2],
@@ -105,8 +105,8 @@ impl<'a> Convex<'a> {
     }
 }
 
-/// Puts the points that hold the same as all of `points` into a manifold: the outermost two, or the deepest and one of them
-/// where the middle hangs deeper.
+/// Puts the points that hold the same as all of `points` into a manifold: the outermost two, or the deepest
+/// and one of them where the middle hangs deeper.
 pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalManifold) {
     let tangent = out.normal.perp();
     let along = |p: &LocalPoint| p.point.dot(tangent);

@@ -12,8 +12,8 @@ pub(super) struct Limits {
     pub(super) prediction: f32,
 }
 
-/// Adds the contact point of two points `p`, `q` with a radius each, if they are near enough, and sets the normal from `p` to
-/// `q`, or `otherwise` if they coincide.
+/// Adds the contact point of two points `p`, `q` with a radius each, if they are near enough, and sets the
+/// normal from `p` to `q`, or `otherwise` if they coincide.
 #[inline]
 pub(super) fn push_between(
     p: Vector,
@@ -40,8 +40,8 @@ pub(super) fn collide_points(a: &Polygonal, b: &Polygonal, input: PairInput, out
     out.normal = push_between(p, q, Vector::Y, Limits { radii: [a.radius, b.radius], prediction }, 0, out);
 }
 
-/// A polygon `a` and a ball `b`: the edge with the largest separation of the centre, or one of its ends if the centre is
-/// beyond it.
+/// A polygon `a` and a ball `b`: the edge with the largest separation of the centre, or one of its ends if
+/// the centre is beyond it.
 pub(super) fn collide_with_point(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
     let PairInput { pose, prediction, .. } = input;
     let center = pose.transform(b.vertices[0]);

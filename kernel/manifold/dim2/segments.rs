@@ -60,8 +60,8 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
         let (reference, incident) = (edge(own, false), edge(other, false));
         return Facing { side, normal: up, reference, incident, limits }.corners(corner, best.end, out);
     }
-    // The side of the segment where the other one is. The nearest end is there too, unless the segments cross or the end lies
-    // on the line; then the far end decides.
+    // The side of the segment where the other one is. The nearest end is there too, unless the segments cross
+    // or the end lies on the line; then the far end decides.
     let far_end = (other[1 - best.end] - own[0]).dot(up);
     let on_line = best.height.abs() <= 1.0e-6 * far_end.abs();
     let faces_left = if crossing || on_line { far_end > 0.0 } else { best.height > 0.0 };

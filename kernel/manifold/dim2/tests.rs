@@ -95,8 +95,8 @@ impl Core {
     }
 }
 
-/// The signed distance of two shapes' surfaces by brute force: to the nearest vertex or edge of disjoint cores, minus the least
-/// penetration along an edge normal of overlapping ones.
+/// The signed distance of two shapes' surfaces by brute force: to the nearest vertex or edge of disjoint
+/// cores, minus the least penetration along an edge normal of overlapping ones.
 pub(super) fn oracle(a: &Shape, b: &Shape, pose: &Pose, shift: P) -> f64 {
     let (core_a, core_b) = (Core::new(a, &Pose::IDENTITY, [0.0; 2]), Core::new(b, pose, shift));
     match (core_a, core_b, a, b) {

@@ -93,7 +93,8 @@ pub(in super::super) fn exact(a: &Shape, b: &Shape, pose: &Pose) -> Option<f64> 
     (!is_curved(a, b)).then(|| oracle(a, b, pose, [0.0; 2]))
 }
 
-/// A prediction distance that finds the contact, and not much more: edges are preferred by a thousandth of it.
+/// A prediction distance that finds the contact, and not much more: edges are preferred by a
+/// thousandth of it.
 pub(in super::super) fn far(a: &Shape, b: &Shape, pose: &Pose) -> f32 {
     exact(a, b, pose).map_or(100.0, |distance| distance.max(0.0) as f32 + 0.02)
 }
@@ -102,8 +103,8 @@ fn is_curved(a: &Shape, b: &Shape) -> bool {
     matches!((a, b), (Shape::Curved(_), _) | (_, Shape::Curved(_)))
 }
 
-/// How much deeper than the best axis the found one may be: by rounding for polygons. Of the axes of ellipses that overlap
-/// deeply one that is nearly the best is good enough.
+/// How much deeper than the best axis the found one may be: by rounding for polygons. Of the axes of ellipses
+/// that overlap deeply one that is nearly the best is good enough.
 pub(in super::super) fn allowed(a: &Shape, b: &Shape, best: f64) -> f64 {
     if is_curved(a, b) { 2.0e-3 + 0.05 * (-0.1 - best).max(0.0) } else { 5.0e-5 }
 }

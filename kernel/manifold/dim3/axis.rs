@@ -1,7 +1,9 @@
-//! Which separating axis makes the contact of two polyhedra, and what becomes of it: the order of work of all such pairs.
+//! Which separating axis makes the contact of two polyhedra, and what becomes of it: the order of work of
+//! all such pairs.
 //!
-//! The axis of the last step is tested first (after Gregorius, "Robust Contact Creation for Physics Simulations", GDC 2015).
-//! Faces are preferred to edges unless edges are clearly better, so that the choice of points is the same from step to step.
+//! The axis of the last step is tested first (after Gregorius, "Robust Contact Creation for Physics
+//! Simulations", GDC 2015). Faces are preferred to edges unless edges are clearly better, so that the choice
+//! of points is the same from step to step.
 
 use super::gjk;
 use crate::manifold::{FeatureCache, LocalManifold};
@@ -107,12 +109,12 @@ pub(super) trait Pair {
     /// The face of A, or of B, with the largest separation.
     fn best_face(&self, of_b: bool) -> FaceAxis;
 
-    /// The pair of edges with the largest separation, if it is larger than `known`. The best faces of A and B tell where the
-    /// shapes are near.
+    /// The pair of edges with the largest separation, if it is larger than `known`. The best faces of A and B
+    /// tell where the shapes are near.
     fn best_edges(&self, of_a: &FaceAxis, of_b: &FaceAxis, known: f32) -> Option<EdgeAxis>;
 
-    /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along the axis, which is
-    /// then the true distance.
+    /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along
+    /// the axis, which is then the true distance.
     #[inline(always)]
     fn build(&self, axis: &Axis, out: &mut LocalManifold) -> bool {
         match axis {
@@ -127,12 +129,12 @@ pub(super) trait Pair {
     /// See [`build`](Self::build).
     fn build_edges(&self, axis: &EdgeAxis, out: &mut LocalManifold) -> bool;
 
-    /// Fills the manifold with one point between the closest features, where the axis understates the distance. Keeps present
-    /// points if the distance is no larger.
+    /// Fills the manifold with one point between the closest features, where the axis understates the
+    /// distance. Keeps present points if the distance is no larger.
     fn build_apart(&self, axis: &Axis, out: &mut LocalManifold);
 
-    /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face. Only for the best of all
-    /// axes: under the face of an earlier step there may be nothing left.
+    /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face. Only for the
+    /// best of all axes: under the face of an earlier step there may be nothing left.
     fn push_deepest(&self, axis: &FaceAxis, out: &mut LocalManifold);
 
     /// Fills the manifold from the cached axis if it still decides the contact, else from the best of all.

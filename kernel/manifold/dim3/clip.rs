@@ -82,8 +82,9 @@ impl<const N: usize, H: Carried> Polygon<N, H> {
     }
 }
 
-/// The face of `incident` most opposite to a direction in its own frame, among the faces around the vertex `deepest` along it;
-/// none if it has no faces. A face elsewhere may be more opposite: the base of a cone that stands on its tip.
+/// The face of `incident` most opposite to a direction in its own frame, among the faces around the vertex
+/// `deepest` along it; none if it has no faces. A face elsewhere may be more opposite: the base of a cone
+/// that stands on its tip.
 pub(super) fn incident_face(incident: &View, normal: Vector, deepest: usize) -> Option<usize> {
     if incident.faces.is_empty() {
         return None;
@@ -121,8 +122,8 @@ pub(super) fn incident_polygon<const N: usize, H: Carried>(
     }
 }
 
-/// Cuts a polygon by the side planes of a face; `extent` is that of the smaller shape. Alternates between two buffers and returns
-/// the one with the result.
+/// Cuts a polygon by the side planes of a face; `extent` is that of the smaller shape. Alternates between two
+/// buffers and returns the one with the result.
 #[inline(always)]
 fn clip<'a, const N: usize>(
     view: &View,
@@ -156,8 +157,8 @@ fn clip<'a, const N: usize>(
     polygon
 }
 
-/// The range of a line, from one of `ends` to the other as 0…1, that lies over a face with a normal and an outline, and the
-/// sides that end it, if any. The sides are `margin` metres farther out.
+/// The range of a line, from one of `ends` to the other as 0…1, that lies over a face with a normal and an
+/// outline, and the sides that end it, if any. The sides are `margin` metres farther out.
 pub(super) fn clip_line(
     normal: Vector,
     outline: impl DoubleEndedIterator<Item = Vector> + Clone,
@@ -211,7 +212,8 @@ impl Reference<'_> {
         u32::from(of_b) << 30 | (face as u32 & 0x3ff) << 20
     }
 
-    /// The point between the surfaces for a corner at height `s` over the plane: at (s + r_ref − r_inc) / 2. In A's frame.
+    /// The point between the surfaces for a corner at height `s` over the plane: at (s + r_ref − r_inc) / 2.
+    /// In A's frame.
     #[inline(always)]
     fn middle(&self, corner: Vector, s: f32) -> Vector {
         let [of_reference, of_incident] = self.radii;
@@ -225,7 +227,8 @@ impl Reference<'_> {
         self.normal.dot(point) - self.offset
     }
 
-    /// Fills a manifold, whose normal is set, with the corners of a clipped polygon. Returns the least height of the corners.
+    /// Fills a manifold, whose normal is set, with the corners of a clipped polygon. Returns the least height
+    /// of the corners.
     #[inline(always)]
     pub fn fill<const N: usize, H: Carried>(
         &self,
@@ -248,8 +251,9 @@ impl Reference<'_> {
         least
     }
 
-    /// Fills a manifold, whose normal is set, with the part of an incident polygon over the face of an axis. `extent` is that of
-    /// the smaller shape. Returns whether the least height of the corners is that of the axis.
+    /// Fills a manifold, whose normal is set, with the part of an incident polygon over the face of an
+    /// axis. `extent` is that of the smaller shape. Returns whether the least height of the corners is
+    /// that of the axis.
     #[inline(always)]
     pub fn fill_clipped<const N: usize>(
         &self,

@@ -109,7 +109,8 @@ impl axis::Pair for Pair<'_> {
             let of_b = of_b[0] * turned(rows[i], 2) + of_b[1] * turned(rows[i], 1);
             let square = signed[i1] * signed[i1] + signed[i2] * signed[i2];
             let value = absolute(distance) - of_a - of_b;
-            // Dividing a negative value by a length below 1 lowers it, so most pairs end here without a square root.
+            // Dividing a negative value by a length below 1 lowers it, so most pairs end here without
+            // a square root.
             (value, square, F32x4::and(bar.lt(value), parallel.lt(square)))
         };
         let axes = [axis(0), axis(1), axis(2)];
@@ -131,14 +132,16 @@ impl axis::Pair for Pair<'_> {
         found
     }
 
-    /// Clips the face of one box that is most opposite to the face on `axis` of the other, which is A unless `of_b`.
+    /// Clips the face of one box that is most opposite to the face on `axis` of the other, which is A
+    /// unless `of_b`.
     ///
-    /// Coordinates are permuted so that the axis comes first. Axes and faces are looked up in tables, since branches on them
-    /// would be mispredicted.
+    /// Coordinates are permuted so that the axis comes first. Axes and faces are looked up in tables, since
+    /// branches on them would be mispredicted.
     fn build_face(&self, face: &FaceAxis, out: &mut LocalManifold) -> bool {
         let &FaceAxis { face: axis, of_b, separation, .. } = face;
         let [x, y, z] = self.frame.axes;
-        // The axes and centre of the other box in the frame of the box with the face, and those of the latter in A's.
+        // The axes and centre of the other box in the frame of the box with the face, and those of the
+        // latter in A's.
         let (axes, position, this, other, columns, origin) = if of_b {
             let axes = [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
             (axes, -self.offset[1], self.half_b, self.half_a, self.frame.axes, self.frame.position)
@@ -290,8 +293,8 @@ impl Pair<'_> {
     }
 }
 
-/// The next edge of a box along axis `edge`, on the face that is most across `normal`: the axis along which it is away, how
-/// far, and how much farther along the normal.
+/// The next edge of a box along axis `edge`, on the face that is most across `normal`: the axis along which
+/// it is away, how far, and how much farther along the normal.
 fn next_edge(normal: &[f32; 3], half: &[f32; 3], edge: usize) -> (usize, f32, f32) {
     let (k, l) = (NEXT[edge], NEXT[NEXT[edge]]);
     let rise = |k: usize| 2.0 * half[k] * normal[k].abs();
@@ -308,8 +311,8 @@ struct Quad {
     q: Vector,
 }
 
-/// The places of a clipped quad: its four corners, four points where an edge enters the rectangle, four where an edge leaves
-/// it, and four corners of the rectangle.
+/// The places of a clipped quad: its four corners, four points where an edge enters the rectangle, four where
+/// an edge leaves it, and four corners of the rectangle.
 struct Clipped {
     patch: Patch<4>,
     /// The points where an edge meets the second pair of sides, as bits.
@@ -350,8 +353,8 @@ fn only(bits: u32, values: F32x4) -> F32x4 {
 impl Quad {
     /// The part with |x| ≤ `half_u`, |y| ≤ `half_v` and a height up to `prediction`, in no order.
     ///
-    /// Four lanes wide and without branches: all edges of the quad are cut by both pairs of sides (Liang and Barsky, 1984), then
-    /// the corners of the rectangle are tested against the quad.
+    /// Four lanes wide and without branches: all edges of the quad are cut by both pairs of sides (Liang and
+    /// Barsky, 1984), then the corners of the rectangle are tested against the quad.
     #[inline(always)]
     fn clip(&self, half_u: f32, half_v: f32, prediction: f32) -> Clipped {
         const P: F32x4 = F32x4::new([-1.0, 1.0, 1.0, -1.0]);

@@ -66,8 +66,8 @@ impl<'a> Convex<'a> {
         collide_pair(&facet, self.shape, input, out);
     }
 
-    /// Fills `out` with the contact of a triangle's face alone, where the shape is over it. `normal` is the face's, towards
-    /// the shape.
+    /// Fills `out` with the contact of a triangle's face alone, where the shape is over it. `normal` is the
+    /// face's, towards the shape.
     pub fn collide_face(
         &self,
         corners: [Vector; 3],

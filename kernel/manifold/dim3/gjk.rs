@@ -55,8 +55,8 @@ pub(super) struct Closest {
 }
 
 impl Closest {
-    /// Fills `out` with one point between the closest points, where a contact has no point or separates by less than they do.
-    /// `radii` are those around the cores.
+    /// Fills `out` with one point between the closest points, where a contact has no point or separates by
+    /// less than they do. `radii` are those around the cores.
     pub fn fill_apart(&self, radii: [f32; 2], separation: f32, prediction: f32, out: &mut LocalManifold) {
         if !(self.distance > separation) && out.count > 0 {
             return;
@@ -97,9 +97,9 @@ pub(super) fn closest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> Opt
     closest_within(a, b, frame, frame.point(b.center()) - a.center(), f32::INFINITY)
 }
 
-/// The same up to a limit, beginning with the vertices along a direction from A to B: the nearer it is to that between the
-/// closest points, the fewer iterations are needed. Of cores that are farther apart the distance may be any between the limit
-/// and the true one, and the points are not the closest.
+/// The same up to a limit, beginning with the vertices along a direction from A to B: the nearer it is to
+/// that between the closest points, the fewer iterations are needed. Of cores that are farther apart the
+/// distance may be any between the limit and the true one, and the points are not the closest.
 pub(super) fn closest_within<A: Core, B: Core>(
     a: &A,
     b: &B,
@@ -111,7 +111,8 @@ pub(super) fn closest_within<A: Core, B: Core>(
     let limit = f64::from(limit);
     let found =
         search.closest(Accuracy { tolerance: 0.0, beyond: limit }).filter(|found| found.distance > 0.0)?;
-    // Numbers of both features, independent of the order of vertices. They are only compared from step to step.
+    // Numbers of both features, independent of the order of vertices. They are only compared from
+    // step to step.
     let mask = |side: usize| {
         search.simplex().iter().fold(0u32, |bits, vertex| bits | 1 << (vertex.features[side] % 15))
     };
@@ -124,7 +125,8 @@ pub(super) fn closest_within<A: Core, B: Core>(
     })
 }
 
-/// The distance below which closest points of shapes of these extents have no direction. Separating axes are used there.
+/// The distance below which closest points of shapes of these extents have no direction. Separating axes
+/// are used there.
 pub(super) fn resolution(larger: f32, smaller: f32) -> f32 {
     max(1.0e-3 * smaller, 1.0e-5 * larger)
 }

@@ -1,7 +1,7 @@
 //! Contact manifolds in space. `dim2` has the same functions for the plane.
 //!
-//! Balls and capsules have closed forms where they exist, two boxes have a function of their own, and all other pairs of
-//! polyhedra (with radii) share [`convex`]. What is round about an axis is in [`curved`].
+//! Balls and capsules have closed forms where they exist, two boxes have a function of their own, and all
+//! other pairs of polyhedra (with radii) share [`convex`]. What is round about an axis is in [`curved`].
 
 mod axis;
 mod clip;
@@ -30,7 +30,7 @@ mod view;
 use super::{LocalManifold, PairInput};
 use crate::shape::{Capsule, Segment, Shape};
 pub(super) use cuboids::collide as collide_cuboids;
-pub use curved::lead_rims;
+pub use curved::midstep_rims;
 pub(super) use facet::{Convex, borders, face_normal, facing, few_points, with_convex};
 use view::with_view;
 

@@ -1,4 +1,5 @@
-//! Reduction of many candidate points to at most four: the deepest one, and those that span the largest area with it.
+//! Reduction of many candidate points to at most four: the deepest one, and those that span the largest
+//! area with it.
 
 use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Num, Vector, max};
@@ -42,9 +43,9 @@ impl<const N: usize> Candidates<N> {
 
 /// Fills a manifold, whose normal is set, with at most four candidates; see [`Patch::reduce`].
 ///
-/// Candidates of one face are in a plane, so that its ends hold it. Of several faces (`FACES`) the ends may be in the air while
-/// the body leans on an edge between them. One end of that would be dropped, sink in, and be pushed out, which adds energy. So
-/// candidates above the deepest one are worth less.
+/// Candidates of one face are in a plane, so that its ends hold it. Of several faces (`FACES`) the ends may
+/// be in the air while the body leans on an edge between them. One end of that would be dropped, sink in, and
+/// be pushed out, which adds energy. So candidates above the deepest one are worth less.
 #[inline]
 pub(super) fn keep<const FACES: bool>(list: &[LocalPoint], out: &mut LocalManifold) {
     let (kept, count) = match list.len() {
@@ -58,7 +59,8 @@ pub(super) fn keep<const FACES: bool>(list: &[LocalPoint], out: &mut LocalManifo
     }
 }
 
-/// The positions of candidates in the plane of contact, four side by side in each of `B` blocks. The last may be unused.
+/// The positions of candidates in the plane of contact, four side by side in each of `B` blocks. The last
+/// may be unused.
 pub(super) struct Patch<const B: usize> {
     pub x: [F32x4; B],
     pub y: [F32x4; B],
@@ -121,9 +123,9 @@ impl<const B: usize> Patch<B> {
         (i, F32x4::flat(&worths)[i])
     }
 
-    /// The indices of the candidates to keep, and their number, at most four. The first is the deepest, within 0.1 % of the
-    /// patch's size. Then come the one farthest from it, the one of the largest triangle, and the one that adds most to the
-    /// triangle's area.
+    /// The indices of the candidates to keep, and their number, at most four. The first is the deepest,
+    /// within 0.1 % of the patch's size. Then come the one farthest from it, the one of the largest triangle,
+    /// and the one that adds most to the triangle's area.
     pub fn reduce<const FACES: bool>(&self) -> ([usize; 4], usize) {
         let mut present = self.present();
         let count = present.count_ones() as usize;

@@ -26,7 +26,8 @@ impl Cores {
         }
     }
 
-    /// The contact along the line through the points, or along `fallback` if their distance is within `rounding`.
+    /// The contact along the line through the points, or along `fallback` if their distance is
+    /// within `rounding`.
     fn contact(&self, fallback: Vector, rounding: f32, prediction: f32, out: &mut LocalManifold) {
         out.normal = self.direction_or(fallback, rounding);
         self.push(out.normal, prediction, 0, out);
@@ -178,7 +179,8 @@ fn nearest_on_sides(t: &Triangle, p: Vector) -> Vector {
     nearest
 }
 
-/// Two capsules (or segments). Parallel ones get a point at each end of the range in which they are side by side.
+/// Two capsules (or segments). Parallel ones get a point at each end of the range in which they are
+/// side by side.
 pub(super) fn capsules(a: &Capsule, b: &Capsule, input: PairInput, out: &mut LocalManifold) {
     let PairInput { pose, prediction, .. } = input;
     let (b0, b1) = (pose.transform(b.a), pose.transform(b.b));
@@ -195,7 +197,8 @@ pub(super) fn capsules(a: &Capsule, b: &Capsule, input: PairInput, out: &mut Loc
         unit_or(crossed, Vector::Y)
     };
     let rounding = rounding_of(&[a.a, a.b, b0, b1]);
-    // The normal of coinciding cores points to the side of B. Its distance is more accurate than its direction.
+    // The normal of coinciding cores points to the side of B. Its distance is more accurate than
+    // its direction.
     let between = fallback.dot(cores.b - cores.a);
     let side = if between.abs() > 0.05 * rounding { between } else { fallback.dot(pose.position) };
     if side < 0.0 {
@@ -250,8 +253,9 @@ impl Lines {
 }
 
 impl Cores {
-    /// The contact of two capsules, of which these are the closest points, with a point at each end of the range in which both are
-    /// side by side, if they are nearly parallel there. The normal is that in the middle of the range.
+    /// The contact of two capsules, of which these are the closest points, with a point at each end of the
+    /// range in which both are side by side, if they are nearly parallel there. The normal is that in the
+    /// middle of the range.
     fn touch(
         &self,
         lines: &Lines,

@@ -1,11 +1,12 @@
-//! Separating axes of two polyhedra: the normals of their faces, and the cross products of edges that pass the Gauss map
-//! test.
+//! Separating axes of two polyhedra: the normals of their faces, and the cross products of edges that pass
+//! the Gauss map test.
 //!
-//! One point rules out most axes. The height of any point of B over a face of A is an upper bound of the face's separation. An
-//! outward axis n of an edge of A is a positive combination of the normals of the two faces beside it. If a point of B is
-//! deeper than S < 0 under both planes, it is also deeper than S along every such n, since |n| is at most the sum of its
-//! parts. The point is the vertex of B that is lowest over the best face, since shapes touch near there. Of the 40 faces of two
-//! hulls with 12 vertices some nine remain, of their 900 pairs of edges about a tenth.
+//! One point rules out most axes. The height of any point of B over a face of A is an upper bound of the
+//! face's separation. An outward axis n of an edge of A is a positive combination of the normals of the two
+//! faces beside it. If a point of B is deeper than S < 0 under both planes, it is also deeper than S along
+//! every such n, since |n| is at most the sum of its parts. The point is the vertex of B that is lowest over
+//! the best face, since shapes touch near there. Of the 40 faces of two hulls with 12 vertices some nine
+//! remain, of their 900 pairs of edges about a tenth.
 
 use super::axis::{EdgeAxis, FaceAxis};
 use super::view::{MatrixPose, View};
@@ -13,10 +14,12 @@ use crate::math::{F32x4, Lane, Num, Vector, min};
 use crate::shape::{EdgeBlock, largest};
 use crate::tuning::manifold::PARALLEL;
 
-/// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks are searched.
+/// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks
+/// are searched.
 const LISTED: usize = 64;
 
-/// The signed distance of `other` from a face of `this`, where `frame` transforms `other` into its frame. `this` counts as A.
+/// The signed distance of `other` from a face of `this`, where `frame` transforms `other` into its frame.
+/// `this` counts as A.
 #[inline(always)]
 pub(super) fn face_separation(this: &View, face: usize, other: &View, frame: &MatrixPose) -> FaceAxis {
     let f = &this.faces[face];
@@ -24,8 +27,8 @@ pub(super) fn face_separation(this: &View, face: usize, other: &View, frame: &Ma
     FaceAxis { face, of_b: false, separation: (f.normal.dot(frame.position) - f.offset) - depth, lowest }
 }
 
-/// The face of `this` with the largest separation, where `frame` transforms `other` into the frame of `this`. Stops at the
-/// first above `limit`. `this` counts as A.
+/// The face of `this` with the largest separation, where `frame` transforms `other` into the frame of `this`.
+/// Stops at the first above `limit`. `this` counts as A.
 pub(super) fn best_face(this: &View, other: &View, frame: &MatrixPose, limit: f32) -> FaceAxis {
     if this.faces.is_empty() {
         return FaceAxis { face: 0, of_b: false, separation: f32::NEG_INFINITY, lowest: 0 };
@@ -68,8 +71,8 @@ fn face_under(view: &View, point: Vector) -> usize {
     largest(best, at).0.min(view.faces.len() - 1)
 }
 
-/// The edges of four, as bits, that may have an axis along which `point` of the other polyhedron is not deeper than
-/// `depth` ≤ 0. See the module.
+/// The edges of four, as bits, that may have an axis along which `point` of the other polyhedron is not
+/// deeper than `depth` ≤ 0. See the module.
 #[inline(always)]
 pub(super) fn open_edges(block: &EdgeBlock, point: Vector, depth: f32) -> u32 {
     let (arm, depth) = (Vector::<F32x4>::splat(point) - block.tail, F32x4::splat(depth));
@@ -127,16 +130,16 @@ impl EdgeTest {
     }
 }
 
-/// The input of the search over edges: a point of each polyhedron in the frame of the other, and the separation that edges
-/// have to exceed.
+/// The input of the search over edges: a point of each polyhedron in the frame of the other, and the
+/// separation that edges have to exceed.
 pub(super) struct Known {
     pub of_b_in_a: Vector,
     pub of_a_in_b: Vector,
     pub separation: f32,
 }
 
-/// The pair of edges with the largest separation, if that is larger than the `known` one. `frame` transforms B into A's frame.
-/// Stops at the first above `limit`.
+/// The pair of edges with the largest separation, if that is larger than the `known` one. `frame` transforms
+/// B into A's frame. Stops at the first above `limit`.
 pub(super) fn best_edges(
     a: &View,
     b: &View,

@@ -92,9 +92,9 @@ pub(super) fn deepest(m: &LocalManifold) -> f32 {
 /// to 0.2 % of the extent better, and an axis counts as exact within 0.1 %.
 const TOLERANCE: f64 = 0.006;
 
-/// How much farther shapes may reach into each other along a contact's normal than along the best one. Capsules and segments
-/// that touch along a line have the normal of its middle, which is up to a tenth (`CROSSED`) from that of their closest
-/// points.
+/// How much farther shapes may reach into each other along a contact's normal than along the best one.
+/// Capsules and segments that touch along a line have the normal of its middle, which is up to a tenth
+/// (`CROSSED`) from that of their closest points.
 fn slack(a: &Shape, b: &Shape, m: &LocalManifold) -> f64 {
     let length = |shape: &Shape| match shape {
         Shape::Capsule(s) => Some((s.b - s.a).length()),
@@ -507,7 +507,8 @@ fn hostile_input_gives_no_contact() {
 
 #[test]
 fn a_ball_beside_a_face_as_near_as_its_plane_is_not_missed() {
-    // Beyond the edge of a sliver's face, so that clipping leaves no points, and within rounding of the face's plane.
+    // Beyond the edge of a sliver's face, so that clipping leaves no points, and within rounding of the
+    // face's plane.
     let points = [
         v(0.0, 0.0, -0.21818882),
         v(0.0, 0.0, -0.5602403),

@@ -132,9 +132,10 @@ fn is_line(shape: &Shape) -> bool {
     matches!(shape, Shape::Capsule(_) | Shape::Segment(_))
 }
 
-/// How much deeper than the best axis the found one may be. Faces are preferred by 0.2 % of the extent, and count as exact to
-/// 0.1 %. With frusta the search is sure to 0.5 %, and it ends at 1 % of the depth. Capsules that are nearly parallel touch
-/// along a line while its ends sway by less than a tenth of the radii, so half of that to either side.
+/// How much deeper than the best axis the found one may be. Faces are preferred by 0.2 % of the extent, and
+/// count as exact to 0.1 %. With frusta the search is sure to 0.5 %, and it ends at 1 % of the depth.
+/// Capsules that are nearly parallel touch along a line while its ends sway by less than a tenth of the
+/// radii, so half of that to either side.
 pub(in super::super) fn allowed(a: &Shape, b: &Shape, best: f64) -> f64 {
     if is_curved(a, b) {
         return 0.005 * smaller(a, b).min(4.0) + 0.01 * (-best).max(0.0) + 1.0e-4;
@@ -146,8 +147,8 @@ pub(in super::super) fn allowed(a: &Shape, b: &Shape, best: f64) -> f64 {
 /// The tolerance of polyhedra of a metre, as in the tests of single pairs.
 const POLYHEDRA: f64 = 0.006;
 
-/// How much less deep than the axis the points may be, as a share of the depth. A face may be preferred to edges that are
-/// hardly better, and its deepest corner is beside the face then.
+/// How much less deep than the axis the points may be, as a share of the depth. A face may be preferred to
+/// edges that are hardly better, and its deepest corner is beside the face then.
 pub(in super::super) const BESIDE: f64 = 0.04;
 
 /// How far points may be from where the axis has them.

@@ -4,7 +4,9 @@ use super::facet::{borders, face_normal, with_convex};
 use super::oracle::Solid;
 use super::tests::{deepest, fresh};
 use crate::manifold::tests_pairs::Dice;
-use crate::manifold::{CompositeBuffers, FeatureCache, LocalManifold, Look, PairInput, collide_composite};
+use crate::manifold::{
+    CompositeBuffers, FeatureCache, LocalManifold, ManifoldQuery, PairInput, collide_composite,
+};
 use crate::math::{Pose, Vector};
 use crate::shape::{Capsule, Composite, Cuboid, Hull, Segment, Shape, Surface, Triangle};
 use core::cell::Cell;
@@ -176,7 +178,7 @@ fn a_face_alone_has_points_between_it_and_the_shape_over_it() {
 fn a_swapped_facet_has_the_same_contact() {
     let mut dice = Dice::new(7);
     let mut buffers = CompositeBuffers::default();
-    let look = Look::up_to(0.05);
+    let query = ManifoldQuery::up_to(0.05);
     for (name, shape) in shapes(&mut dice) {
         for _ in 0..POSES / 4 {
             let corners = triangle(1.0, &mut dice);
@@ -184,9 +186,9 @@ fn a_swapped_facet_has_the_same_contact() {
             let surface = Shape::Composite(Arc::new(Composite::of_surface(surface, None)));
             let pose = pose(corners, &shape, &mut dice);
             let (mut found, mut swapped) = (Vec::new(), Vec::new());
-            collide_composite(&surface, &shape, &pose, look, &mut buffers, &mut found);
+            collide_composite(&surface, &shape, &pose, query, &mut buffers, &mut found);
             let inverse = pose.inverse();
-            collide_composite(&shape, &surface, &inverse, look, &mut buffers, &mut swapped);
+            collide_composite(&shape, &surface, &inverse, query, &mut buffers, &mut swapped);
             let depths = [&found, &swapped].map(|all| all.iter().map(deepest).fold(0.05, f32::min));
             assert!((depths[0] - depths[1]).abs() < 0.003, "{name}: {depths:?}");
         }

@@ -1,7 +1,8 @@
 //! Triangles of a surface against one polyhedron with a radius, which is viewed once for all of them.
 //!
-//! It decides as all of [`axis`] do, and adds what a triangle has of its own: a single plane, arcs of 180° on the Gauss map, and
-//! often a proof that its face is the best axis, which saves the search for others. Everything is in the polyhedron's frame.
+//! It decides as all of [`axis`] do, and adds what a triangle has of its own: a single plane, arcs of 180° on
+//! the Gauss map, and often a proof that its face is the best axis, which saves the search for others.
+//! Everything is in the polyhedron's frame.
 
 use super::axis::{self, Axis, EdgeAxis, FaceAxis, Pair as _, Sizes};
 use super::clip::{self, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CORNERS, Polygon, Reference};
@@ -102,8 +103,8 @@ pub(super) fn collide(corners: [Vector; 3], view: &View, input: PairInput, out: 
     true
 }
 
-/// Fills `out` with the contact of a triangle's face alone, whatever the best axis is. `normal` is the face's, towards the
-/// polyhedron.
+/// Fills `out` with the contact of a triangle's face alone, whatever the best axis is. `normal` is the
+/// face's, towards the polyhedron.
 pub(super) fn collide_face(
     corners: [Vector; 3],
     normal: Vector,
@@ -316,13 +317,14 @@ impl<'a> Pair<'a> {
         FaceAxis { face, of_b: true, separation, lowest }
     }
 
-    /// The sides that may make an axis which separates more than a plane does, as bits. Without any the plane is the best of all
-    /// axes: its lowest vertex v is over the triangle.
+    /// The sides that may make an axis which separates more than a plane does, as bits. Without any the plane
+    /// is the best of all axes: its lowest vertex v is over the triangle.
     ///
-    /// Let s be the separation along the plane's normal n, and ρ how far v is inside of a side, whose outward normal is u. An axis
-    /// m = n cos θ + u sin θ of the side separates by at most s cos θ − ρ sin θ, since v is no farther. That is at most s if s ≥ 0,
-    /// and if s < 0 for tan(θ/2) ≤ ρ/|s|. The rest is the axes around −n, along which the polyhedron's centre is deeper.
-    /// If that holds for all sides, it does for any axis: the triangle reaches at least the least ρ around v's foot.
+    /// Let s be the separation along the plane's normal n, and ρ how far v is inside of a side, whose outward
+    /// normal is u. An axis m = n cos θ + u sin θ of the side separates by at most s cos θ − ρ sin θ, since v
+    /// is no farther. That is at most s if s ≥ 0, and if s < 0 for tan(θ/2) ≤ ρ/|s|. The rest is the axes
+    /// around −n, along which the polyhedron's centre is deeper. If that holds for all sides, it does for any
+    /// axis: the triangle reaches at least the least ρ around v's foot.
     #[inline(always)]
     fn open_sides(&self, plane: &FaceAxis) -> u32 {
         let vertex = self.view.vertices[plane.lowest];

@@ -1,5 +1,5 @@
-//! A view of every polyhedral core: hulls by reference; boxes, triangles, segments and points as scaled copies on the stack.
-//! The same code collides all of them.
+//! A view of every polyhedral core: hulls by reference; boxes, triangles, segments and points as scaled
+//! copies on the stack. The same code collides all of them.
 
 use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
 use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, Shape, farthest};
@@ -272,8 +272,8 @@ impl Small {
         small
     }
 
-    /// A segment with a radius: an edge whose Gauss map is the great circle about it, as three arcs of 120°, like a thin prism.
-    /// It has no faces.
+    /// A segment with a radius: an edge whose Gauss map is the great circle about it, as three arcs of 120°,
+    /// like a thin prism. It has no faces.
     pub fn segment(a: Vector, b: Vector, radius: f32) -> Self {
         let along = b - a;
         let size = along.abs().max_element();

@@ -2,7 +2,7 @@
 
 use super::super::SubstepParams;
 use super::body::CustomBody;
-use crate::contact::Link;
+use crate::contact::ContactManager;
 use crate::data::Parts;
 use crate::graph::ConstraintKind;
 use core::any::Any;
@@ -95,17 +95,17 @@ impl CustomTable {
     /// constraint has no other effect.
     pub fn add(
         &mut self,
-        link: &mut Link,
+        manager: &mut ContactManager,
         bodies: [u32; 2],
         act: Option<Box<dyn CustomConstraint>>,
     ) -> Result<u32, CustomError> {
         if bodies[0] == bodies[1] {
             return Err(CustomError::SameBody);
         }
-        if let Some(dead) = bodies.into_iter().find(|body| !link.bodies.ids.is_live(*body)) {
+        if let Some(dead) = bodies.into_iter().find(|body| !manager.bodies.ids.is_live(*body)) {
             return Err(CustomError::NoBody(dead));
         }
-        let id = link.connect(KIND, bodies);
+        let id = manager.connect(KIND, bodies);
         let record = Record { act, is_faulty: false };
         match self.records.get_mut(id as usize) {
             Some(place) => *place = record,
@@ -115,11 +115,11 @@ impl CustomTable {
     }
 
     /// Removes a constraint and wakes its bodies.
-    pub fn remove(&mut self, link: &mut Link, id: u32) -> Result<(), CustomError> {
-        if !link.bodies.constraints(KIND).is_live(id) {
+    pub fn remove(&mut self, manager: &mut ContactManager, id: u32) -> Result<(), CustomError> {
+        if !manager.bodies.constraints(KIND).is_live(id) {
             return Err(CustomError::NoConstraint(id));
         }
-        link.disconnect(KIND, id);
+        manager.disconnect(KIND, id);
         self.records[id as usize].act = None;
         Ok(())
     }

@@ -3,7 +3,7 @@
 //! nothing drifts.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::super::batch::{Batch, Filling, Pass, Passes, Sweep};
+use super::super::batch::{Batch, Filling, SolverPass, SolverPasses, Sweep};
 use super::super::input::Item;
 use super::super::pair::Pair;
 use super::super::{BodyRow, InvMass, MassRow, RowView, SubstepParams};
@@ -75,7 +75,7 @@ impl<N: Lane> EndRow<N> {
     /// The change of the end's part of the sum since the start of the step, its gradient with respect to
     /// the anchor's velocity and to the angular velocity, and the arm.
     #[inline(always)]
-    fn look(&mut self, (shift, turn): (Vector<N>, Rot<N>)) -> (N, Vector<N>, Angular<N>, Vector<N>) {
+    fn evaluate(&mut self, (shift, turn): (Vector<N>, Rot<N>)) -> (N, Vector<N>, Angular<N>, Vector<N>) {
         let arm = turn.rotate(self.arm);
         let moved = shift + arm - self.arm;
         let between = self.from + moved;
@@ -175,7 +175,7 @@ impl<N: Lane> CouplingRow<N> {
     /// Until the call returns, no other thread reads or writes the row's writable bodies, or writes the
     /// others.
     #[inline(always)]
-    unsafe fn run(&mut self, bodies: &RowView<BodyRow>, params: &SubstepParams, pass: Pass) {
+    unsafe fn run(&mut self, bodies: &RowView<BodyRow>, params: &SubstepParams, pass: SolverPass) {
         // SAFETY: by the contract.
         let (deltas, mut pair) = unsafe {
             let [a, b] = &self.ids;
@@ -186,7 +186,7 @@ impl<N: Lane> CouplingRow<N> {
         let mut responses = [(Vector::ZERO, Angular::ZERO); 2];
         let mut along = responses;
         for side in 0..2 {
-            let (change, normal, turn, arm) = self.ends[side].look(deltas[side]);
+            let (change, normal, turn, arm) = self.ends[side].evaluate(deltas[side]);
             let moment = arm.cross(normal) + turn;
             along[side] = (normal, moment);
             let (v, w) = (self.masses.linear[side].apply(normal), self.masses.angular[side].apply(moment));
@@ -195,7 +195,7 @@ impl<N: Lane> CouplingRow<N> {
             k += v.dot(normal) + w.dot(moment);
             self.on_b = (normal, turn);
         }
-        if pass == Pass::WarmStart {
+        if pass == SolverPass::WarmStart {
             push(&mut pair, &responses, self.impulses[0] - self.impulses[1]);
         } else {
             let both = self.limits[0].eq(self.limits[1]);
@@ -208,7 +208,7 @@ impl<N: Lane> CouplingRow<N> {
                 let gap = (value - self.limits[side]) * sign;
                 let before = self.impulses[side];
                 let at = (gap, rate * sign, k);
-                let after = self.softening.limit(side, both, at, before, params, pass == Pass::Solve);
+                let after = self.softening.limit(side, both, at, before, params, pass == SolverPass::Solve);
                 self.impulses[side] = after;
                 push(&mut pair, &responses, (after - before) * sign);
             }
@@ -255,7 +255,7 @@ pub(super) struct CouplingView<'a, N: Entry> {
 }
 
 impl<N: Entry> Batch for CouplingView<'_, N> {
-    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes {
+    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> SolverPasses {
         // SAFETY: by the contract.
         let rows = unsafe { self.rows.take(rows) };
         for (row, lanes) in rows.iter_mut().zip(items.chunks(N::WIDTH)) {
@@ -269,10 +269,10 @@ impl<N: Entry> Batch for CouplingView<'_, N> {
         }
         // SAFETY: the job has no further condition.
         unsafe { N::enter(self.proof, FinishJob { rows, masses: from.masses }) };
-        Passes::BASIC
+        SolverPasses::BASIC
     }
 
-    unsafe fn run(&self, rows: Range<usize>, _: Passes, sweep: &Sweep) {
+    unsafe fn run(&self, rows: Range<usize>, _: SolverPasses, sweep: &Sweep) {
         // SAFETY: by the contract.
         unsafe { N::enter(self.proof, RunJob { rows: self.rows.take(rows), sweep }) };
     }

@@ -16,7 +16,6 @@
 //!
 //! After Catto, "Soft Constraints" (GDC 2011), and his Box2D v3.
 
-mod batch;
 mod block;
 mod class;
 mod coupling;
@@ -28,6 +27,7 @@ mod dim;
 mod elimination;
 mod forest;
 mod gap;
+mod joint_batch;
 mod orientation;
 mod place;
 mod records;
@@ -46,7 +46,6 @@ mod tree_scratch;
 mod tree_single;
 mod tree_view;
 
-pub(super) use batch::{JOINT_BATCHES, JointRows, JointViews, joints, sort_joints};
 pub use coupling::{CouplingDef, CouplingEnd, EndCoordinate};
 pub use def::{
     Axis, AxisSpring, Drive, Give, JointDef, JointError, JointFrame, JointSolver, Motor, OrientationMotor,
@@ -54,6 +53,7 @@ pub use def::{
 };
 pub use dim::{AXES, coordinate};
 pub use gap::JointGap;
+pub(super) use joint_batch::{JOINT_BATCHES, JointRows, JointViews, joints, sort_joints};
 pub(super) use records::Records;
 pub use state::JointReaction;
 pub(super) use table::InertiaFloors;

@@ -72,7 +72,7 @@ impl<N: Lane> OrientationRow<N> {
 
     /// The motor's gradients and errors at a place.
     #[inline(always)]
-    pub(super) fn look(&self, place: &Place<N>) -> Turning<N> {
+    pub(super) fn evaluate(&self, place: &Place<N>) -> Turning<N> {
         let [a, b] = place.bases;
         let error = rotation_vector(b.mul(a.mul(self.target).inverse()));
         let axes = place.turn_axes();

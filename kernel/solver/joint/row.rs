@@ -1,7 +1,7 @@
 //! Joint rows, with one joint per lane.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::super::batch::{Filling, Pass};
+use super::super::batch::{Filling, SolverPass};
 use super::super::pair::Pair;
 use super::super::{BodyRow, InvMass, MassRow, RowView, Softness, SubstepParams};
 use super::block::{Block, Factors, Locked, Softening};
@@ -299,16 +299,16 @@ impl<N: Lane> Row<N> {
         (singles, orientation): (&mut [Single<N>], Option<&mut OrientationRow<N>>),
         bodies: &RowView<BodyRow>,
         params: &SubstepParams,
-        pass: Pass,
+        pass: SolverPass,
     ) {
         // SAFETY: by the contract.
         let (place, mut pair) = unsafe { (self.start.now(bodies, &self.ids), Pair::load(bodies, &self.ids)) };
-        let biased = pass == Pass::Solve;
+        let biased = pass == SolverPass::Solve;
         let (arm, of_world) = (place.arm(), self.of_world());
         let mut borne = Borne { arm, force: Vector::ZERO, torque: Angular::ZERO };
         let rows = &mut self.block[..D];
         let block = Block::<N, D>::new(&place, of_world, &self.masses);
-        let solved = if pass == Pass::WarmStart {
+        let solved = if pass == SolverPass::WarmStart {
             block.push(rows, &mut pair);
             None
         } else {
@@ -317,7 +317,7 @@ impl<N: Lane> Row<N> {
         };
         let has_more = !singles.is_empty() || orientation.is_some();
         if let Some(motor) = orientation {
-            let turning = motor.look(&place);
+            let turning = motor.evaluate(&place);
             match &solved {
                 None => {
                     for i in 0..TURNS {

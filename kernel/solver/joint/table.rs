@@ -8,7 +8,7 @@ use super::dim::{AXES, BLOCK, TURNS, lacking, with_inertia};
 use super::gap::JointGap;
 use super::records::Records;
 use super::state::{JointReaction, State};
-use crate::contact::Link;
+use crate::contact::ContactManager;
 use crate::graph::{COLOR_COUNT, ColorGraph, ConstraintKind};
 use crate::table::BodyTable;
 use crate::thread_pool::ThreadPool;
@@ -38,29 +38,33 @@ const KIND: ConstraintKind = ConstraintKind::Joint;
 
 impl JointTable {
     /// Adds a joint and wakes its bodies. They are in one island if both are dynamic.
-    pub fn add(&mut self, link: &mut Link, def: JointDef) -> Result<u32, JointError> {
+    pub fn add(&mut self, manager: &mut ContactManager, def: JointDef) -> Result<u32, JointError> {
         def.check()?;
-        self.enter(link, def, Summary::of(&def), None)
+        self.enter(manager, def, Summary::of(&def), None)
     }
 
     /// Adds a coupling, which gets an id among joints, and wakes its bodies.
-    pub fn add_coupling(&mut self, link: &mut Link, def: CouplingDef) -> Result<u32, JointError> {
+    pub fn add_coupling(
+        &mut self,
+        manager: &mut ContactManager,
+        def: CouplingDef,
+    ) -> Result<u32, JointError> {
         def.check()?;
-        self.enter(link, def.joint(), Summary::OF_COUPLING, Some(Box::new(CouplingRecord::new(def))))
+        self.enter(manager, def.joint(), Summary::OF_COUPLING, Some(Box::new(CouplingRecord::new(def))))
     }
 
     fn enter(
         &mut self,
-        link: &mut Link,
+        manager: &mut ContactManager,
         def: JointDef,
         summary: Summary,
         coupling: Option<Box<CouplingRecord>>,
     ) -> Result<u32, JointError> {
         let bodies = def.bodies;
-        if let Some(dead) = bodies.into_iter().find(|body| !link.bodies.ids.is_live(*body)) {
+        if let Some(dead) = bodies.into_iter().find(|body| !manager.bodies.ids.is_live(*body)) {
             return Err(JointError::NoBody(dead));
         }
-        let id = link.connect(KIND, bodies);
+        let id = manager.connect(KIND, bodies);
         let index = id as usize;
         if index == self.defs.len() {
             self.defs.push(def);
@@ -76,9 +80,14 @@ impl JointTable {
 
     /// Changes a coupling except for its bodies, and wakes them if the definition differs. The count of
     /// turns continues.
-    pub fn set_coupling(&mut self, link: &mut Link, id: u32, def: CouplingDef) -> Result<(), JointError> {
+    pub fn set_coupling(
+        &mut self,
+        manager: &mut ContactManager,
+        id: u32,
+        def: CouplingDef,
+    ) -> Result<(), JointError> {
         def.check()?;
-        let is_live = link.bodies.constraints(KIND).is_live(id);
+        let is_live = manager.bodies.constraints(KIND).is_live(id);
         let coupling = self.couplings.get_mut(id as usize).filter(|_| is_live);
         let Some(coupling) = coupling.and_then(Option::as_deref_mut) else {
             return Err(JointError::NoJoint(id));
@@ -91,7 +100,7 @@ impl JointTable {
         }
         coupling.def = def;
         self.defs[id as usize] = def.joint();
-        def.bodies.into_iter().for_each(|body| link.wake_body(body));
+        def.bodies.into_iter().for_each(|body| manager.wake_body(body));
         Ok(())
     }
 
@@ -117,9 +126,9 @@ impl JointTable {
 
     /// Changes a joint except for its bodies, and wakes them if the definition differs. Coordinates that
     /// are still solved in the same way keep their impulses.
-    pub fn set(&mut self, link: &mut Link, id: u32, def: JointDef) -> Result<(), JointError> {
+    pub fn set(&mut self, manager: &mut ContactManager, id: u32, def: JointDef) -> Result<(), JointError> {
         def.check()?;
-        if !link.bodies.constraints(KIND).is_live(id) {
+        if !manager.bodies.constraints(KIND).is_live(id) {
             return Err(JointError::NoJoint(id));
         }
         if self.couplings[id as usize].is_some() {
@@ -146,16 +155,16 @@ impl JointTable {
         }
         *old = def;
         self.summaries[id as usize] = Summary::of(&def);
-        def.bodies.into_iter().for_each(|body| link.wake_body(body));
+        def.bodies.into_iter().for_each(|body| manager.wake_body(body));
         Ok(())
     }
 
     /// Removes a joint and wakes its bodies.
-    pub fn remove(&mut self, link: &mut Link, id: u32) -> Result<(), JointError> {
-        if !link.bodies.constraints(KIND).is_live(id) {
+    pub fn remove(&mut self, manager: &mut ContactManager, id: u32) -> Result<(), JointError> {
+        if !manager.bodies.constraints(KIND).is_live(id) {
             return Err(JointError::NoJoint(id));
         }
-        link.disconnect(KIND, id);
+        manager.disconnect(KIND, id);
         Ok(())
     }
 

@@ -9,7 +9,7 @@
 #![expect(unsafe_code, reason = "bodies and joints of different trees are changed at once")]
 
 use super::super::BodyRows;
-use super::super::batch::{Filling, Pass, Sweep};
+use super::super::batch::{Filling, SolverPass, Sweep};
 use super::super::input::RowInput;
 use super::def::JointSolver;
 use super::forest::{Edge, Forest, GROUND};
@@ -218,7 +218,7 @@ impl JointTrees {
 
     /// Runs a pass over all trees.
     pub(in super::super) fn run(&mut self, sweep: &Sweep, pool: &ThreadPool) {
-        if self.forest.trees.is_empty() || sweep.pass == Pass::UndoSplit {
+        if self.forest.trees.is_empty() || sweep.pass == SolverPass::UndoSplit {
             return;
         }
         // SAFETY: each group is run once, and no two groups share a joint or a dynamic body. Only dynamic

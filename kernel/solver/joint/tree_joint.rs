@@ -1,7 +1,7 @@
 //! A body and a joint of trees of equal shape, one tree per lane.
 
 use super::super::BodyRows;
-use super::super::batch::{Pass, Sweep};
+use super::super::batch::{SolverPass, Sweep};
 use super::super::pair::Pair;
 use super::block::{coordinates, wrapped};
 use super::dim::{ANGLES, BLOCK, DOF, lacking, numbers, of_numbers};
@@ -216,13 +216,13 @@ impl<N: Lane> TreeJoint<N> {
 
     /// Writes the softness of the locked coordinates in a pass. The link then has no other rows.
     #[inline(always)]
-    pub(super) fn soften(&self, link: &mut Link<N>, pass: Pass) {
+    pub(super) fn soften(&self, link: &mut Link<N>, pass: SolverPass) {
         link.count = self.locked;
         for (i, row) in self.locks().zip(&mut link.rows) {
             let (soft, gradient) = (&self.row.block[i].softening, self.gradient(row));
             let own = self.row.masses.response(&gradient).along(&gradient);
             row.softness = match pass {
-                Pass::Solve => own * soft.share + soft.more,
+                SolverPass::Solve => own * soft.share + soft.more,
                 _ => own * N::select(is(soft.is_spring), N::splat(LOOSE), N::splat(NO_MASS)),
             };
         }
@@ -235,7 +235,7 @@ impl<N: Lane> TreeJoint<N> {
             let locked = &self.row.block[i];
             let (soft, is_spring) = (&locked.softening, is(locked.softening.is_spring));
             let mut rate = self.gradient(row).rate(pair);
-            if sweep.pass == Pass::Solve {
+            if sweep.pass == SolverPass::Solve {
                 let bias = soft.bias_rate * row.error;
                 let most =
                     if i < DIM { sweep.params.max_push_speed } else { SMALL_TURN * sweep.params.inv_h };

@@ -2,7 +2,7 @@
 //! axes.
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
-use super::super::batch::{Pass, Sweep};
+use super::super::batch::{SolverPass, Sweep};
 use super::dim::{DOF, TURNS};
 use super::elimination::{self, Screw, motion, screw};
 use super::forest::GROUND;
@@ -89,8 +89,8 @@ impl<N: Entry> Tree<'_, N> {
         let Some(mut motor) = joint.orientation else { return };
         // SAFETY: by the contract.
         let place = unsafe { joint.row.start.now(&sweep.bodies, &joint.row.ids) };
-        let turning = motor.look(&place);
-        if sweep.pass == Pass::Solve {
+        let turning = motor.evaluate(&place);
+        if sweep.pass == SolverPass::Solve {
             let before = motor.impulses;
             let mut alone = [Response::NONE; TURNS];
             for (alone, gradient) in alone.iter_mut().zip(&turning.gradients) {

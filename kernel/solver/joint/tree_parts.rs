@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::BodyRow;
-use super::super::batch::{Pass, Sweep};
+use super::super::batch::{SolverPass, Sweep};
 use super::super::pair::Pair;
 use super::dim::{BLOCK, DOF, inverse_of, least_element, numbers, of_numbers, with_inertia};
 use super::elimination::{self, screw};
@@ -155,7 +155,7 @@ impl<N: Entry> Tree<'_, N> {
     #[inline(always)]
     pub(super) unsafe fn factor_locked(&mut self, _: &Sweep) {
         for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
-            joint.soften(link, Pass::Relax);
+            joint.soften(link, SolverPass::Relax);
         }
         elimination::factor(self.links, self.nodes);
     }
@@ -177,7 +177,7 @@ impl<N: Entry> Tree<'_, N> {
     /// None: the function is unsafe because all parts are.
     #[inline(always)]
     pub(super) unsafe fn factor_all(&mut self, sweep: &Sweep) {
-        let biased = sweep.pass == Pass::Solve;
+        let biased = sweep.pass == SolverPass::Solve;
         for (joint, link) in self.joints.iter_mut().zip(&mut *self.links) {
             joint.soften(link, sweep.pass);
             let range = joint.singles();
@@ -213,7 +213,7 @@ impl<N: Entry> Tree<'_, N> {
     /// Writes the wanted velocities of the joints; zero in closed lanes.
     #[inline(always)]
     fn ask(&mut self, sweep: &Sweep) {
-        let biased = sweep.pass == Pass::Solve;
+        let biased = sweep.pass == SolverPass::Solve;
         let open = is(self.scratch.open);
         for k in 0..self.joints.len() {
             let pair = self.pair(k);
@@ -258,7 +258,7 @@ impl<N: Entry> Tree<'_, N> {
                 let Some(row) = at.row else { continue };
                 let solved = (N::of_double(self.links[k].rows[row].impulse), at.gradient.rate(&pair));
                 let lanes = N::and(lanes, is(at.acts));
-                single.share_out(at, lanes, solved, sweep.params, sweep.pass == Pass::Solve);
+                single.share_out(at, lanes, solved, sweep.params, sweep.pass == SolverPass::Solve);
             }
         }
     }
@@ -289,7 +289,7 @@ impl<N: Entry> Tree<'_, N> {
                 let of_length = N::select(is_turn, N::splat(SAME), N::splat(sweep.params.max_sag));
                 let tolerance = N::splat(SAME) * of_length / N::splat(sweep.params.dt);
                 let solved = (at.gradient.rate(&pair), tolerance, adds);
-                let biased = sweep.pass == Pass::Solve;
+                let biased = sweep.pass == SolverPass::Solve;
                 let (changed, change) = single.pivot(at, open, solved, sweep.params, biased);
                 any_changed = N::select(changed, N::ONE, any_changed);
                 if N::any(N::or(change.lt(N::ZERO), is(change))) {

@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "rows of bodies are shared by threads")]
 
 use super::super::MassRow;
-use super::super::batch::{Pass, Sweep};
+use super::super::batch::{SolverPass, Sweep};
 use super::elimination::{Link, Node};
 use super::single::Single;
 use super::tree_joint::{TreeBody, TreeJoint};
@@ -184,7 +184,7 @@ impl<N: Entry> Tree<'_, N> {
     /// As [`solve`](Self::solve).
     unsafe fn factor(&mut self, sweep: &Sweep) {
         let entry = self.entry;
-        if sweep.pass == Pass::Solve && !core::mem::replace(&mut self.scratch.is_weighed, true) {
+        if sweep.pass == SolverPass::Solve && !core::mem::replace(&mut self.scratch.is_weighed, true) {
             let mut is_factored = false;
             for k in 0..self.joints.len() {
                 for index in self.joints[k].singles() {

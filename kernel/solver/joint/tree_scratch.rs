@@ -1,6 +1,6 @@
 //! Data of trees of joints that is kept between passes.
 
-use super::super::batch::Pass;
+use super::super::batch::SolverPass;
 use super::dim::DOF;
 use super::place::Gradient;
 use super::single::Single;
@@ -15,7 +15,7 @@ pub(super) enum Known {
     /// The positions of its joints.
     Places,
     /// Positions, and the factors of a pass. Both solve passes of a substep use the same factors.
-    Factors(Pass),
+    Factors(SolverPass),
 }
 
 /// Buffers for the passes of a group of trees.

@@ -1,7 +1,7 @@
 //! The trees of one lane width.
 #![expect(unsafe_code, reason = "trees are changed at once")]
 
-use super::super::batch::{Filling, Pass, Sweep};
+use super::super::batch::{Filling, SolverPass, Sweep};
 use super::dim::{AXES, BLOCK, DOF};
 use super::elimination::{Link, Node};
 use super::forest::{Forest, GROUND};
@@ -221,7 +221,7 @@ impl<N: Entry> Trees for TreeView<'_, N> {
         for (lane, number) in lanes(&self.groups[group]) {
             let span = &forest.trees[number];
             for (body, listed) in tree.bodies.iter_mut().zip(&bodies[range(span.bodies)]) {
-                body.set(lane, listed, from.bearing.share(listed.row));
+                body.set(lane, listed, from.mass_scaling.share(listed.row));
             }
             for (k, branch) in forest.branches[range(span.branches)].iter().enumerate() {
                 // SAFETY: by the contract.
@@ -250,7 +250,7 @@ impl<N: Entry> Trees for TreeView<'_, N> {
         unsafe {
             let mut tree = self.take(group);
             match sweep.pass {
-                Pass::WarmStart => tree.warm_start(sweep),
+                SolverPass::WarmStart => tree.warm_start(sweep),
                 _ => tree.solve(sweep),
             }
         }

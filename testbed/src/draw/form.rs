@@ -114,7 +114,8 @@ impl Solid {
         solid
     }
 
-    /// Any convex shape with a round surface, by its farthest point in each direction: the direction is the normal.
+    /// Any convex shape with a round surface, by its farthest point in each direction: the direction
+    /// is the normal.
     pub fn from_support(support: impl Fn(Vec3) -> Vec3) -> Self {
         let rings = CORNERS / 2;
         let mut solid = Self::default();
@@ -186,7 +187,8 @@ impl Solid {
 mod tests {
     use super::*;
 
-    /// Signed volume by the divergence theorem: right only if every triangle is wound outwards and none is missing.
+    /// Signed volume by the divergence theorem: right only if every triangle is wound outwards and
+    /// none is missing.
     fn volume(solid: &Solid) -> f32 {
         let corner = |i: u32| solid.positions[i as usize];
         solid.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))) / 6.0).sum()

@@ -49,8 +49,8 @@ struct Camera {
 }
 
 impl Camera {
-    /// A camera in the view's direction that has all corners of the view's bounds in the picture, in its middle, and
-    /// as large as that allows.
+    /// A camera in the view's direction that has all corners of the view's bounds in the picture, in its
+    /// middle, and as large as that allows.
     fn framing(view: View, width: usize, height: usize) -> Self {
         let backward = view.eye.normalize_or(Vec3::Z);
         let right = Vec3::Y.cross(backward).normalize_or(Vec3::X);
@@ -62,8 +62,9 @@ impl Camera {
             Vec3::new(offset.dot(right), offset.dot(up), offset.dot(backward))
         });
         let tan = Vec2::new(TAN_HALF_FOV * width as f32 / height as f32, TAN_HALF_FOV) * 0.95;
-        // For a camera at (c, d) in this frame, each corner (p, q) asks for |p − c| ≤ (d − q) tan. Two corners of
-        // opposite sides bind: p + q tan and p − q tan are linear, so their extremes give c and d in closed form.
+        // For a camera at (c, d) in this frame, each corner (p, q) asks for |p − c| ≤ (d − q) tan. Two
+        // corners of opposite sides bind: p + q tan and p − q tan are linear, so their extremes give c and d
+        // in closed form.
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for corner in corners {
             high = high.max(corner.truncate() + corner.z * tan);
@@ -175,7 +176,8 @@ impl Buffer {
     }
 }
 
-/// Cuts off what lies nearer than `near` (Sutherland and Hodgman's clipping by one plane). Gives up to four corners.
+/// Cuts off what lies nearer than `near` (Sutherland and Hodgman's clipping by one plane). Gives up to
+/// four corners.
 fn clip(triangle: [(Vec3, Vec3); 3], near: f32) -> ([(Vec3, Vec3); 4], usize) {
     let mut kept = [(Vec3::ZERO, Vec3::ZERO); 4];
     let mut count = 0;
@@ -224,9 +226,8 @@ fn shade(
     if buffer.panes[pixel] > 0 { seen.lerp(Vec3::new(0.62, 0.74, 0.82), 0.16) } else { seen }
 }
 
-/// The share of the hemisphere over a point that is open, by testing whether pixels around it rise above its tangent
-/// plane: 1 in the open, less in creases.
-/// the open, less in creases.
+/// The share of the hemisphere over a point that is open, by testing whether pixels around it rise above its
+/// tangent plane: 1 in the open, less in creases. the open, less in creases.
 fn openness(buffer: &Buffer, camera: &Camera, at: (usize, usize), point: Vec3, normal: Vec3) -> f32 {
     const DIRECTIONS: [(f32, f32); 8] = [
         (1.0, 0.2),

@@ -54,8 +54,8 @@ impl ShadowMap {
         Vec3::new(seen.x * self.scale + 0.5 * SIZE as f32, seen.y * self.scale + 0.5 * SIZE as f32, seen.z)
     }
 
-    /// The share of light that reaches a point of a surface with the given normal, averaged over nine cells. All of
-    /// it outside the map.
+    /// The share of light that reaches a point of a surface with the given normal, averaged over nine cells.
+    /// All of it outside the map.
     pub fn light_at(&self, point: Vec3, normal: Vec3) -> f32 {
         let seen = self.project(point + 1.5 * self.bias * normal);
         let (x, y) = (seen.x.floor(), seen.y.floor());

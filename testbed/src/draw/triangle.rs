@@ -2,11 +2,12 @@
 
 use bevy_math::Vec3;
 
-/// Calls `plot(index, weights)` for every pixel whose middle lies in the triangle. Corners are in pixels (z is not
-/// looked at), in either winding; weights belong to the corners and sum to one.
+/// Calls `plot(index, weights)` for every pixel whose middle lies in the triangle. Corners are in pixels (z
+/// is not looked at), in either winding; weights belong to the corners and sum to one.
 pub fn fill(corners: [Vec3; 3], width: usize, height: usize, mut plot: impl FnMut(usize, [f32; 3])) {
     let [a, b, c] = corners.map(|v| [f64::from(v.x), f64::from(v.y)]);
-    // Twice the signed area of the triangle (p, q, r). In f64, since near floors reach far outside the picture.
+    // Twice the signed area of the triangle (p, q, r). In f64, since near floors reach far
+    // outside the picture.
     let area =
         |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let whole = area(a, b, c);

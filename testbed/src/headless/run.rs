@@ -13,7 +13,8 @@ use crate::sim::{Entry, Simulation};
 /// Pixels of a picture.
 const PIXELS: f32 = 1.6e6;
 
-/// Runs the chosen scenes, prints a line for each and writes its picture. `Err` if pictures cannot be written.
+/// Runs the chosen scenes, prints a line for each and writes its picture. `Err` if pictures
+/// cannot be written.
 pub fn tour(args: &Args, entries: &[Entry]) -> io::Result<()> {
     std::fs::create_dir_all(&args.out)?;
     let mut progress = Progress::new(entries.len());

@@ -63,8 +63,8 @@ pub struct Mouse<'w, 's> {
     list: Query<'w, 's, &'static Interaction>,
 }
 
-/// Rotates with the left button (pans in 2D), pans with the right one, zooms with the wheel. A change of the scene
-/// resets the camera, a restart of the same does not.
+/// Rotates with the left button (pans in 2D), pans with the right one, zooms with the wheel. A change of the
+/// scene resets the camera, a restart of the same does not.
 pub fn read_mouse(
     mut orbit: ResMut<Orbit>,
     stage: NonSend<Stage>,

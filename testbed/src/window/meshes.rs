@@ -14,7 +14,8 @@ use crate::draw::{Drawable, color};
 /// Half the thickness in metres of what is drawn of a line in the plane.
 const LINE: f32 = 0.06;
 
-/// Distance in metres between the planes that flat shapes are drawn in, so that parts of one body do not flicker.
+/// Distance in metres between the planes that flat shapes are drawn in, so that parts of one body
+/// do not flicker.
 const PLY: f32 = 1e-3;
 
 /// What has been uploaded for the scene on stage.
@@ -111,8 +112,8 @@ fn upload(solid: &Solid) -> Mesh {
         .with_inserted_indices(Indices::U32(solid.triangles.as_flattened().to_vec()))
 }
 
-/// A plane outline as triangles: a fan where filled, with a notch at the first corner of round ones to see them turn;
-/// else a thin band along each part of the line.
+/// A plane outline as triangles: a fan where filled, with a notch at the first corner of round ones to see
+/// them turn; else a thin band along each part of the line.
 fn flattened(outline: &Outline) -> Solid {
     let points: Vec<Vec3> = outline.points.iter().map(|p| p.extend(0.0)).collect();
     if outline.filled {

@@ -1,7 +1,7 @@
 //! The scene browser: a window with a list of scenes, the chosen one running in it.
 //!
-//! The window's `App` has no physics. The chosen scene runs in an `App` of its own, as in the headless tour, and its
-//! colliders are copied into meshes each frame; so one window shows both dimensions.
+//! The window's `App` has no physics. The chosen scene runs in an `App` of its own, as in the headless tour,
+//! and its colliders are copied into meshes each frame; so one window shows both dimensions.
 
 mod browser;
 mod camera;
@@ -48,8 +48,8 @@ pub fn run(entries: Vec<Entry>) -> ExitCode {
     }
 }
 
-/// Reports to the waiting process that the window has drawn. Rendering is a frame behind, and opens the surface in its
-/// first frame: at the third frame, the first has been drawn.
+/// Reports to the waiting process that the window has drawn. Rendering is a frame behind, and opens the
+/// surface in its first frame: at the third frame, the first has been drawn.
 fn say_drawn(mut frame: Local<u32>) {
     *frame = frame.saturating_add(1);
     if *frame == 3 {

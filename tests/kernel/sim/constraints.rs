@@ -3,7 +3,7 @@
 use super::super::units;
 use super::Sim;
 use crate::kernel;
-use kernel::contact::Link;
+use kernel::contact::ContactManager;
 use kernel::solver::{
     CouplingDef, CustomConstraint, CustomError, CustomTable, JointDef, JointError, JointGap, JointReaction,
     JointTable,
@@ -13,23 +13,23 @@ impl Sim {
     /// Adds a joint.
     pub fn join(&mut self, def: JointDef) -> Result<u32, JointError> {
         let def = units::scaled_joint(&def, self.unit);
-        self.with_joints(|joints, link| joints.add(link, def))
+        self.with_joints(|joints, manager| joints.add(manager, def))
     }
 
     /// Changes a joint.
     pub fn rejoin(&mut self, id: u32, def: JointDef) -> Result<(), JointError> {
         let def = units::scaled_joint(&def, self.unit);
-        self.with_joints(|joints, link| joints.set(link, id, def))
+        self.with_joints(|joints, manager| joints.set(manager, id, def))
     }
 
     /// Removes a joint.
     pub fn part(&mut self, id: u32) -> Result<(), JointError> {
-        self.with_joints(|joints, link| joints.remove(link, id))
+        self.with_joints(|joints, manager| joints.remove(manager, id))
     }
 
-    fn with_joints<R>(&mut self, f: impl FnOnce(&mut JointTable, &mut Link) -> R) -> R {
+    fn with_joints<R>(&mut self, f: impl FnOnce(&mut JointTable, &mut ContactManager) -> R) -> R {
         let mut joints = core::mem::take(&mut self.solver.joints);
-        let result = f(&mut joints, &mut self.link());
+        let result = f(&mut joints, &mut self.contact_manager());
         self.solver.joints = joints;
         result
     }
@@ -37,12 +37,12 @@ impl Sim {
     /// Adds a coupling.
     pub fn couple(&mut self, def: CouplingDef) -> Result<u32, JointError> {
         let def = units::scaled_coupling(&def, self.unit);
-        self.with_joints(|joints, link| joints.add_coupling(link, def))
+        self.with_joints(|joints, manager| joints.add_coupling(manager, def))
     }
 
     /// Changes a coupling.
     pub fn recouple(&mut self, id: u32, def: CouplingDef) -> Result<(), JointError> {
-        self.with_joints(|joints, link| joints.set_coupling(link, id, def))
+        self.with_joints(|joints, manager| joints.set_coupling(manager, id, def))
     }
 
     /// The force of a coupling along its coordinate at A.
@@ -61,17 +61,17 @@ impl Sim {
         bodies: [u32; 2],
         act: Option<Box<dyn CustomConstraint>>,
     ) -> Result<u32, CustomError> {
-        self.with_customs(|customs, link| customs.add(link, bodies, act))
+        self.with_customs(|customs, manager| customs.add(manager, bodies, act))
     }
 
     /// Removes a custom constraint.
     pub fn untie(&mut self, id: u32) -> Result<(), CustomError> {
-        self.with_customs(|customs, link| customs.remove(link, id))
+        self.with_customs(|customs, manager| customs.remove(manager, id))
     }
 
-    fn with_customs<R>(&mut self, f: impl FnOnce(&mut CustomTable, &mut Link) -> R) -> R {
+    fn with_customs<R>(&mut self, f: impl FnOnce(&mut CustomTable, &mut ContactManager) -> R) -> R {
         let mut customs = core::mem::take(&mut self.solver.customs);
-        let result = f(&mut customs, &mut self.link());
+        let result = f(&mut customs, &mut self.contact_manager());
         self.solver.customs = customs;
         result
     }

@@ -27,8 +27,8 @@ pub const LACKS: &[Need] = &[
     Need::Children,
 ];
 
-/// The stages of an update in order, and their share. Clocks are between the public sets, added by [`put_clocks`]; so a
-/// stage is all systems of its sets, and the stages add up to the whole update.
+/// The stages of an update in order, and their share. Clocks are between the public sets, added by
+/// [`put_clocks`]; so a stage is all systems of its sets, and the stages add up to the whole update.
 const STAGES: [(&str, Share); 14] = [
     ("before physics", Share::Bevy),
     ("transforms and masses in", Share::Ecs),
@@ -148,8 +148,8 @@ pub(crate) use shared;
 
 /// Makes an app in which one update runs exactly one fixed step.
 ///
-/// There are as many compute threads as cores that the process is pinned to. Bevy's main thread also works while it
-/// waits for them, on the same cores. `BENCH_BEVY_COMPUTE` overrides the number.
+/// There are as many compute threads as cores that the process is pinned to. Bevy's main thread also works
+/// while it waits for them, on the same cores. `BENCH_BEVY_COMPUTE` overrides the number.
 pub fn app(settings: &Settings) -> App {
     let compute = std::env::var("BENCH_BEVY_COMPUTE").ok().and_then(|v| v.parse().ok());
     let compute = compute.unwrap_or(settings.threads);

@@ -1,5 +1,5 @@
-//! Avian 2D, by its prelude and diagnostics only. The crate is chosen outside of this file, which compiles with
-//! upstream and with ours.
+//! Avian 2D, by its prelude and diagnostics only. The crate is chosen outside of this file, which compiles
+//! with upstream and with ours.
 
 #[cfg(feature = "joints")]
 use bench_core::dim2::Joint2;

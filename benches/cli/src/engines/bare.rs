@@ -1,5 +1,5 @@
-//! The App without physics: the same entities with only a `Transform`. The difference of an engine's time to this is
-//! its cost.
+//! The App without physics: the same entities with only a `Transform`. The difference of an engine's time to
+//! this is its cost.
 
 use bench_core::{
     dim2::D2,

@@ -73,7 +73,8 @@ fn prism(half_height: f32, radius: f32) -> Vec<V3> {
 /// The body must be alive.
 unsafe fn add_hull(body: b3BodyId, def: &b3ShapeDef, points: &[V3]) {
     let points: Vec<b3Vec3> = points.iter().map(|p| v(*p)).collect();
-    // SAFETY: the body is alive by the contract. Box3D copies the points into the hull, and the hull into the shape.
+    // SAFETY: the body is alive by the contract. Box3D copies the points into the hull, and the hull
+    // into the shape.
     unsafe {
         let hull = b3CreateHull(points.as_ptr(), points.len() as _, points.len() as _);
         assert!(!hull.is_null(), "Box3D takes the hull");
@@ -85,8 +86,8 @@ unsafe fn add_hull(body: b3BodyId, def: &b3ShapeDef, points: &[V3]) {
 impl World {
     fn add_shape(&mut self, body: b3BodyId, def: &b3ShapeDef, part: &Part3) {
         let place = b3Transform { p: v(part.pos), q: q(part.turn) };
-        // SAFETY: the body is alive, and Box3D copies definition and geometry, but for meshes, which live as long
-        // as the world.
+        // SAFETY: the body is alive, and Box3D copies definition and geometry, but for meshes, which live as
+        // long as the world.
         unsafe {
             match &part.shape {
                 Shape3::Sphere(r) => {

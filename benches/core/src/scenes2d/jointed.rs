@@ -33,7 +33,8 @@ pub(super) fn bridge() -> Scene<D2> {
     scene
 }
 
-/// The limbs of a ragdoll: half length and radius of each capsule along x, where its middle is, and how it is turned.
+/// The limbs of a ragdoll: half length and radius of each capsule along x, where its middle is, and how
+/// it is turned.
 const LIMBS: [(f32, f32, V2, f32); 10] = [
     (0.2, 0.12, [0.0, 0.0], 90.0),
     (0.05, 0.11, [0.0, 0.45], 90.0),

@@ -1,5 +1,5 @@
-//! The 2D scenes. Those named as in Box2D's benchmark have its set-up, at most with fewer bodies, which their line
-//! then says.
+//! The 2D scenes. Those named as in Box2D's benchmark have its set-up, at most with fewer bodies, which their
+//! line then says.
 
 use crate::{
     chains,
@@ -84,8 +84,8 @@ const fn growth(name: &'static str, build: fn() -> Scene<D2>) -> Entry<D2> {
     Entry { name, family: Family::Growth, build }
 }
 
-/// Adds a pyramid of unit boxes whose bottom row has `base`, starting at `left`, standing on `floor`. Returns the
-/// index of its top box.
+/// Adds a pyramid of unit boxes whose bottom row has `base`, starting at `left`, standing on `floor`. Returns
+/// the index of its top box.
 fn add_pyramid(bodies: &mut Vec<Body2>, base: usize, [left, floor]: V2) -> usize {
     for row in 0..base {
         for column in 0..base - row {

@@ -26,7 +26,8 @@ pub(super) fn scene() -> Scene<D2> {
     scene
 }
 
-/// Cross sections of the drum's segments, of ten degrees each and one more on either side, and of its paddles.
+/// Cross sections of the drum's segments, of ten degrees each and one more on either side, and
+/// of its paddles.
 pub(crate) fn sections() -> Vec<[V2; 4]> {
     let degree = TAU / 360.0;
     let quad = |inner: f32, outer: f32, from: f32, to: f32| {

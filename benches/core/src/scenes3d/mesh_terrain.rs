@@ -34,7 +34,8 @@ pub(super) fn scene() -> Scene<D3> {
     scene
 }
 
-/// Cells of a metre. A steep rim keeps everything on the mesh, so that a body that leaves has fallen through it.
+/// Cells of a metre. A steep rim keeps everything on the mesh, so that a body that leaves has
+/// fallen through it.
 fn hills() -> Mesh {
     let n = 101usize;
     let rim = |x: f32| 2.0 * (x.abs() - 43.0).max(0.0);

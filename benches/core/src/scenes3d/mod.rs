@@ -1,5 +1,5 @@
-//! The 3D scenes. Those named as in Box3D's benchmark have its set-up, at most with fewer bodies, which their line
-//! then says.
+//! The 3D scenes. Those named as in Box3D's benchmark have its set-up, at most with fewer bodies, which their
+//! line then says.
 
 use std::sync::Arc;
 

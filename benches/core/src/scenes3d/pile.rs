@@ -1,4 +1,5 @@
-//! Small shapes fall into a yard between four walls: all kinds with cylinders among them, and cylinders alone.
+//! Small shapes fall into a yard between four walls: all kinds with cylinders among them, and
+//! cylinders alone.
 
 use super::{light, rock};
 use crate::{

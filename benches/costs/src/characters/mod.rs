@@ -16,8 +16,8 @@ const SIZE: [f32; 2] = [0.4, 1.0];
 /// Highest step in metres.
 const STEP: f32 = 0.3;
 
-/// Measures both dimensions, and Rapier in 3D. Bevy's compute pool has one thread, beside the main thread; `taskset -c 0`
-/// leaves both one core.
+/// Measures both dimensions, and Rapier in 3D. Bevy's compute pool has one thread, beside the main thread;
+/// `taskset -c 0` leaves both one core.
 pub fn measure() {
     crowd();
     println!("one character on a course, this and Rapier:");
@@ -53,7 +53,8 @@ fn height(x: f32, z: f32) -> f32 {
     3.0 * (x * 0.1).sin() * (z * 0.13).cos()
 }
 
-/// The velocity along x of a character of the crowd, in m/s: half of them walk one way, half of them the other.
+/// The velocity along x of a character of the crowd, in m/s: half of them walk one way, half of
+/// them the other.
 fn speed(i: usize) -> f32 {
     if i.is_multiple_of(2) { 3.0 } else { -3.0 }
 }

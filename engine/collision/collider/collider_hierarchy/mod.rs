@@ -1,4 +1,5 @@
-//! Which collider belongs to which body: [`ColliderOf`] and [`RigidBodyColliders`], derived from the hierarchy.
+//! Which collider belongs to which body: [`ColliderOf`] and [`RigidBodyColliders`], derived from
+//! the hierarchy.
 
 mod plugin;
 
@@ -23,12 +24,12 @@ use crate::physics_transform::tree::FollowsBody;
 /// On a collider: its body, the nearest of the entity itself and its ancestors with a
 /// [`RigidBody`](crate::dynamics::rigid_body::RigidBody).
 ///
-/// The engine inserts, replaces and removes it at the end of the command that changed the hierarchy. Colliders without
-/// a body have none.
+/// The engine inserts, replaces and removes it at the end of the command that changed the hierarchy.
+/// Colliders without a body have none.
 ///
-/// An app may insert it with any body; the engine then keeps it until the app removes it. The collider's pose on the
-/// body is its [`ColliderTransform`]. If that has its default value, the collider stays where its own `Transform` puts
-/// it in the world. If both are default, it is at the body's origin.
+/// An app may insert it with any body; the engine then keeps it until the app removes it. The collider's pose
+/// on the body is its [`ColliderTransform`]. If that has its default value, the collider stays where its own
+/// `Transform` puts it in the world. If both are default, it is at the body's origin.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -60,8 +61,8 @@ impl FromWorld for ColliderOf {
 }
 
 impl ColliderOf {
-    /// Whether the app, not the hierarchy, attached a collider. The link of a body to itself always belongs to the
-    /// hierarchy.
+    /// Whether the app, not the hierarchy, attached a collider. The link of a body to itself always belongs
+    /// to the hierarchy.
     pub(super) fn is_explicit(&self, collider: Entity, follows: Option<&FollowsBody>) -> bool {
         self.body != collider && follows.and_then(|follows| follows.above) != Some(self.body)
     }
@@ -83,8 +84,8 @@ impl Relationship for ColliderOf {
         self.body = body;
     }
 
-    /// Adds the collider to the body's list, as Bevy's own hook does. It reports no error if an observer has despawned
-    /// one of them, and does not add a body to its own list twice.
+    /// Adds the collider to the body's list, as Bevy's own hook does. It reports no error if an observer has
+    /// despawned one of them, and does not add a body to its own list twice.
     fn on_insert(mut world: DeferredWorld, context: HookContext) {
         // A clone of a body has no list, so the links of its cloned colliders make one.
         if matches!(context.relationship_hook_mode, RelationshipHookMode::Skip) {
@@ -114,7 +115,8 @@ fn list_collider(world: &mut World, collider: Entity) {
     }
 }
 
-/// On a body: its colliders, including its own entity if that has a collider. Despawning the body despawns them.
+/// On a body: its colliders, including its own entity if that has a collider. Despawning the body
+/// despawns them.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -145,8 +147,8 @@ impl RelationshipTarget for RigidBodyColliders {
     }
 }
 
-/// Clones no list: links make one. Colliders below a body are cloned with its children, if these are. With them go
-/// colliders that the app attached and that are elsewhere.
+/// Clones no list: links make one. Colliders below a body are cloned with its children, if these are. With
+/// them go colliders that the app attached and that are elsewhere.
 fn clone_list(source: &SourceComponent, context: &mut ComponentCloneCtx) {
     let Some(list) = source.read::<RigidBodyColliders>() else { return };
     if context.moving() {

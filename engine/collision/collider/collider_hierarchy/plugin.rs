@@ -20,7 +20,8 @@ use crate::{
     },
 };
 
-/// Updates [`ColliderOf`] and [`RigidBodyColliders`] from the hierarchy, at the end of the command that changed it.
+/// Updates [`ColliderOf`] and [`RigidBodyColliders`] from the hierarchy, at the end of the command
+/// that changed it.
 pub struct ColliderHierarchyPlugin;
 
 /// Present if colliders are attached to bodies.
@@ -31,8 +32,8 @@ pub(crate) struct AttachesColliders;
 #[derive(Resource)]
 pub(crate) struct PlacesColliders;
 
-/// Entities at or below which colliders may have another body. Entities that changed in one command, for instance a
-/// batch, are processed together.
+/// Entities at or below which colliders may have another body. Entities that changed in one command, for
+/// instance a batch, are processed together.
 #[derive(Resource, Default)]
 pub(crate) struct AttachQueue {
     entities: Vec<Entity>,
@@ -125,8 +126,8 @@ fn leave_body(
     }
 }
 
-/// Unlinks the colliders at and below an entity that leaves its parent, down to the next body. If the next command
-/// despawns the old body, it must not despawn them.
+/// Unlinks the colliders at and below an entity that leaves its parent, down to the next body. If the next
+/// command despawns the old body, it must not despawn them.
 fn detach_at_once(
     left: On<Discard, ChildOf>,
     tree: Res<TransformTree>,
@@ -254,8 +255,8 @@ pub(crate) fn attach_now(world: &mut World) {
     }
 }
 
-/// Links new bodies that are their own colliders, with one archetype move for link and list, and removes them from
-/// `links`.
+/// Links new bodies that are their own colliders, with one archetype move for link and list, and removes them
+/// from `links`.
 fn attach_to_themselves(world: &mut World, links: &mut Vec<(Entity, Option<Entity>)>) {
     let mut own = Vec::new();
     links.retain(|&(collider, body)| {
@@ -306,8 +307,8 @@ fn mark_compound(world: &mut World, body: Entity) {
     }
 }
 
-/// Lets a collider follow the body given by the app. If the app gave no pose on the body, the collider stays where its
-/// `Transform` puts it.
+/// Lets a collider follow the body given by the app. If the app gave no pose on the body, the collider stays
+/// where its `Transform` puts it.
 fn adopt(world: &mut World, collider: Entity) {
     let Some(&ColliderOf { body }) = world.get::<ColliderOf>(collider) else { return };
     let offset = offset_from_body(world, collider, body);

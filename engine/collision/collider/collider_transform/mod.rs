@@ -21,11 +21,12 @@ use crate::{
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct UpdateColliderTransforms;
 
-/// The pose and scale of a collider relative to its body, derived from the transforms between them. On the body itself,
-/// and on colliders without a body, only the scale is used.
+/// The pose and scale of a collider relative to its body, derived from the transforms between them. On the
+/// body itself, and on colliders without a body, only the scale is used.
 ///
 /// The engine gives the collider this scale, unless
-/// [`transform_to_collider_scale`](crate::physics_transform::PhysicsTransformConfig::transform_to_collider_scale) is off.
+/// [`transform_to_collider_scale`](crate::physics_transform::PhysicsTransformConfig::transform_to_collider_scale)
+/// is off.
 #[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -37,9 +38,9 @@ pub struct ColliderTransform {
     pub rotation: Rotation,
     /// The scale of the collider in the world, along its own axes. Negative factors mirror it.
     ///
-    /// Below a turned and unevenly scaled ancestor an entity is sheared, which no collider is. Its scale is then the
-    /// diagonal of R, where Q R is its transform and Q its rotation: the x axis has its length, and each other axis what
-    /// is at right angles to those before it.
+    /// Below a turned and unevenly scaled ancestor an entity is sheared, which no collider is. Its scale is
+    /// then the diagonal of R, where Q R is its transform and Q its rotation: the x axis has its length, and
+    /// each other axis what is at right angles to those before it.
     pub scale: Vector,
 }
 

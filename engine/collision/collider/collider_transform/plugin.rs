@@ -137,8 +137,8 @@ type Offsets<'w, 's> = Query<
     (&'static mut ColliderTransform, Option<&'static ColliderOf>, Option<&'static FollowsBody>),
 >;
 
-/// Sets the transform of a collider on its body. Returns whether it changed. If the app attached the collider, only the
-/// scale is that of the transforms.
+/// Sets the transform of a collider on its body. Returns whether it changed. If the app attached the
+/// collider, only the scale is that of the transforms.
 fn put_offset(colliders: &mut Offsets, entity: Entity, offset: ColliderTransform) -> bool {
     let Ok((mut held, of, follows)) = colliders.get_mut(entity) else { return false };
     let is_explicit = of.is_some_and(|of| of.is_explicit(entity, follows));
@@ -156,7 +156,8 @@ impl FromWorld for PlacerState {
     }
 }
 
-/// Computes the [`ColliderTransform`]s of newly attached colliders at the end of the command that attached them.
+/// Computes the [`ColliderTransform`]s of newly attached colliders at the end of the command that
+/// attached them.
 fn place_now(world: &mut World) {
     let Some(mut state) = world.get_resource_mut::<PlacerState>().and_then(|mut state| state.0.take()) else {
         return;

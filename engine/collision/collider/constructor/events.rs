@@ -2,7 +2,8 @@
 
 use bevy_ecs::{entity::Entity, event::EntityEvent};
 
-/// Triggered on an entity after its [`ColliderConstructor`](super::ColliderConstructor) inserted the collider.
+/// Triggered on an entity after its [`ColliderConstructor`](super::ColliderConstructor) inserted
+/// the collider.
 ///
 /// The constructor is already removed.
 ///
@@ -21,12 +22,12 @@ pub struct ColliderConstructorReady {
     pub entity: Entity,
 }
 
-/// Triggered on an entity when its [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy) is done: all
-/// colliders below it are inserted, those from meshes that had to be loaded too.
+/// Triggered on an entity when its [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy) is
+/// done: all colliders below it are inserted, those from meshes that had to be loaded too.
 ///
-/// The events of the single colliders come before. The hierarchy component is already removed. Constructors that failed,
-/// with a warning each, do not hold it up. One whose mesh was taken away, or is not being loaded, does, until it gets a mesh or is
-/// removed.
+/// The events of the single colliders come before. The hierarchy component is already removed. Constructors
+/// that failed, with a warning each, do not hold it up. One whose mesh was taken away, or is not being
+/// loaded, does, until it gets a mesh or is removed.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq)]
 pub struct ColliderConstructorHierarchyReady {
     /// The entity that had the hierarchy component.

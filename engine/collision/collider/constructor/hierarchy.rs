@@ -11,8 +11,8 @@ use crate::{
     collision::collider::CollisionLayers, dynamics::rigid_body::mass_properties::components::ColliderDensity,
 };
 
-/// Makes colliders on all descendants of an entity, for example on the nodes of a level from a glTF file. Not on the
-/// entity itself.
+/// Makes colliders on all descendants of an entity, for example on the nodes of a level from a glTF file. Not
+/// on the entity itself.
 ///
 /// Each descendant gets the default [`ColliderConstructor`], or what is set for its `Name`. It gets none if
 ///
@@ -21,15 +21,15 @@ use crate::{
 /// - the constructor needs a mesh and the descendant has none,
 /// - it has a collider or a constructor already, and its name is not in [`config`](Self::config).
 ///
-/// Layers and density of a descendant whose name is in the config are replaced by those of the config; others are set
-/// only where the descendant has none of its own.
+/// Layers and density of a descendant whose name is in the config are replaced by those of the config; others
+/// are set only where the descendant has none of its own.
 ///
 /// The component is processed in `Update`. Where it, or a descendant, spawns a scene (`WorldAssetRoot` or
-/// `DynamicWorldRoot`), it waits until the scene is there. That needs feature `bevy_scene`; without the feature it waits
-/// until the entity has children, and warns once. When all colliders are inserted the component is removed, and
-/// [`ColliderConstructorHierarchyReady`](super::ColliderConstructorHierarchyReady) is triggered. Descendants that are
-/// spawned later get no colliders. If the component is removed before, there is no event, and constructors that
-/// descendants already have stay.
+/// `DynamicWorldRoot`), it waits until the scene is there. That needs feature `bevy_scene`; without the
+/// feature it waits until the entity has children, and warns once. When all colliders are inserted the
+/// component is removed, and [`ColliderConstructorHierarchyReady`](super::ColliderConstructorHierarchyReady)
+/// is triggered. Descendants that are spawned later get no colliders. If the component is removed before,
+/// there is no event, and constructors that descendants already have stay.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -62,7 +62,8 @@ pub struct ColliderConstructorHierarchy {
 
 crate::type_path::type_path!(ColliderConstructorHierarchy, "collision::collider::constructor");
 
-/// Settings for descendants of one name. What is `None` is as the [hierarchy](ColliderConstructorHierarchy)'s default.
+/// Settings for descendants of one name. What is `None` is as the
+/// [hierarchy](ColliderConstructorHierarchy)'s default.
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(type_path = false, Debug, Default, PartialEq)]

@@ -1,8 +1,9 @@
-//! Colliders described by data: [`ColliderConstructor`] for one entity, [`ColliderConstructorHierarchy`] for all
-//! descendants of one, and the events when they are done.
+//! Colliders described by data: [`ColliderConstructor`] for one entity, [`ColliderConstructorHierarchy`] for
+//! all descendants of one, and the events when they are done.
 //!
-//! `dim2` and `dim3` have the constructors, `hierarchy` their settings for descendants. `systems` makes the colliders;
-//! `mesh` tells it of meshes and `scene` of scenes, each with a stand-in for builds without the feature.
+//! `dim2` and `dim3` have the constructors, `hierarchy` their settings for descendants. `systems` makes
+//! the colliders; `mesh` tells it of meshes and `scene` of scenes, each with a stand-in for builds
+//! without the feature.
 
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]

@@ -10,7 +10,8 @@ use super::{
 use crate::schedule::PhysicsSystems;
 
 /// Makes colliders from [`ColliderConstructor`](super::ColliderConstructor) and
-/// [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy), in `Update`, also while physics is paused.
+/// [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy), in `Update`, also while
+/// physics is paused.
 ///
 /// Part of `PhysicsPlugins`.
 #[derive(Default)]

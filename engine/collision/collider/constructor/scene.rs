@@ -25,8 +25,8 @@ impl Scenes<'_, '_> {
     /// Whether scenes are known, and waited for.
     pub(super) const ARE_KNOWN: bool = true;
 
-    /// Whether an entity waits for the scene it spawns. Without Bevy's plugin for scenes none does: none would come. Nor would
-    /// one that failed to load, which Bevy reports.
+    /// Whether an entity waits for the scene it spawns. Without Bevy's plugin for scenes none does: none
+    /// would come. Nor would one that failed to load, which Bevy reports.
     pub(super) fn is_awaited(&self, entity: Entity) -> bool {
         let (Ok((instance, world, dynamic)), Some(spawner)) = (self.roots.get(entity), &self.spawner) else {
             return false;

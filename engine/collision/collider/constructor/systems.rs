@@ -1,5 +1,5 @@
-//! Makes colliders of constructors: hierarchies give constructors to descendants, constructors insert colliders, and
-//! hierarchies whose descendants are done are removed.
+//! Makes colliders of constructors: hierarchies give constructors to descendants, constructors insert
+//! colliders, and hierarchies whose descendants are done are removed.
 
 use bevy_ecs::{
     change_detection::DetectChanges,
@@ -30,8 +30,8 @@ pub(super) fn are_any(work: Query<(), HasConstructor>) -> bool {
     !work.is_empty()
 }
 
-/// Makes colliders. In a command: in a chain of systems, most frames would pay for two points of synchronisation and have
-/// nothing to do.
+/// Makes colliders. In a command: in a chain of systems, most frames would pay for two points of
+/// synchronisation and have nothing to do.
 pub(super) fn construct(mut commands: Commands) {
     commands.queue(|world: &mut World| {
         run(world, give_constructors);

@@ -6,7 +6,8 @@ use crate::parry::math::IVector;
 /// The lowest and the highest cell of a box.
 pub(super) type CellBox = [IVector; 2];
 
-/// The cells as boxes, in ascending order of their ends across the last axis. Cells that there are twice count once.
+/// The cells as boxes, in ascending order of their ends across the last axis. Cells that there are
+/// twice count once.
 pub(super) fn joined(cells: &[IVector]) -> Vec<CellBox> {
     match Grid::of(cells) {
         Some(grid) => grid.joined(),
@@ -14,7 +15,8 @@ pub(super) fn joined(cells: &[IVector]) -> Vec<CellBox> {
     }
 }
 
-/// Up to this number of places per cell a grid is filled; above, cells are sorted. More takes more memory for scattered cells.
+/// Up to this number of places per cell a grid is filled; above, cells are sorted. More takes more memory for
+/// scattered cells.
 const PLACES: usize = 16;
 
 /// The places around cells, as bits.
@@ -66,7 +68,8 @@ impl Grid {
     fn joined(&self) -> Vec<CellBox> {
         let [width, height, depth] = self.sizes;
         let mut blocks: Vec<Places> = Vec::new();
-        // The last block by the place of its lowest corner in a layer, and the last sheet of the layer by that in a row.
+        // The last block by the place of its lowest corner in a layer, and the last sheet of the layer by
+        // that in a row.
         let mut of_corner = vec![NONE; width * height];
         let (mut sheets, mut of_start): (Vec<Places>, _) = (Vec::new(), vec![NONE; width]);
         for z in 0..depth {

@@ -4,8 +4,8 @@ use super::dim;
 use crate::parry::math::Pose;
 use crate::parry::shape::{SharedShape, TypedShape};
 
-/// Appends the convex parts of a shape at a pose. Parry's compounds cannot contain composite shapes, so these are
-/// decomposed into triangles, segments and boxes.
+/// Appends the convex parts of a shape at a pose. Parry's compounds cannot contain composite shapes, so these
+/// are decomposed into triangles, segments and boxes.
 pub(super) fn flatten(pose: Pose, shape: &SharedShape, out: &mut Vec<(Pose, SharedShape)>) {
     match shape.as_typed_shape() {
         TypedShape::Compound(compound) => {

@@ -13,8 +13,8 @@ pub(super) const MAX_VOXEL: i32 = 1 << 24;
 impl Collider {
     /// A collider made from several at poses relative to it.
     ///
-    /// Compounds in it are flattened, and meshes, polylines, height fields and voxels are decomposed into triangles,
-    /// segments and boxes.
+    /// Compounds in it are flattened, and meshes, polylines, height fields and voxels are decomposed into
+    /// triangles, segments and boxes.
     pub fn compound(shapes: Vec<(impl Into<Position>, impl Into<Rotation>, impl Into<Collider>)>) -> Self {
         checked!("compound", |input| {
             let mut parts = Vec::with_capacity(shapes.len());
@@ -30,7 +30,8 @@ impl Collider {
         })
     }
 
-    /// A capsule along the Y axis: a segment of the given length with a radius. `length + 2 * radius` high in total.
+    /// A capsule along the Y axis: a segment of the given length with a radius. `length + 2 * radius`
+    /// high in total.
     pub fn capsule(radius: Scalar, length: Scalar) -> Self {
         checked!("capsule", |input| {
             let half = input.length_or_zero(length) * 0.5;
@@ -45,8 +46,8 @@ impl Collider {
         })
     }
 
-    /// The half-space (in 2D half-plane) behind the plane through the origin with an outward normal. A zero or invalid
-    /// normal becomes the Y axis.
+    /// The half-space (in 2D half-plane) behind the plane through the origin with an outward normal. A zero
+    /// or invalid normal becomes the Y axis.
     pub fn half_space(outward_normal: Vector) -> Self {
         checked!("half_space", |input| SharedShape::halfspace(input.direction(outward_normal)).into())
     }
@@ -72,17 +73,17 @@ impl Collider {
         })
     }
 
-    /// A triangle mesh. Triangles that are invalid are left out. See [`try_trimesh`](Self::try_trimesh) for errors
-    /// instead.
+    /// A triangle mesh. Triangles that are invalid are left out. See [`try_trimesh`](Self::try_trimesh) for
+    /// errors instead.
     ///
-    /// A mesh has no volume, so thin or fast bodies tunnel through it more easily than through solid shapes. For
-    /// dynamic bodies prefer several convex shapes.
+    /// A mesh has no volume, so thin or fast bodies tunnel through it more easily than through solid shapes.
+    /// For dynamic bodies prefer several convex shapes.
     pub fn trimesh(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> Self {
         Self::trimesh_with_config(vertices, indices, TrimeshFlags::empty())
     }
 
-    /// A triangle mesh, or an error: no triangles, or one whose indices do not exist, repeat or refer to coordinates
-    /// that are not finite (`BadTriangle`).
+    /// A triangle mesh, or an error: no triangles, or one whose indices do not exist, repeat or refer to
+    /// coordinates that are not finite (`BadTriangle`).
     pub fn try_trimesh(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> Result<Self, TrimeshBuilderError> {
         Self::try_trimesh_with_config(vertices, indices, TrimeshFlags::empty())
     }
@@ -172,8 +173,8 @@ impl Collider {
         })
     }
 
-    /// The boxes that an outline (2D: segments) or surface (3D: triangles) passes through, and those inside of it by
-    /// `fill_mode`. Boxes of which there would be too many are larger.
+    /// The boxes that an outline (2D: segments) or surface (3D: triangles) passes through, and those inside
+    /// of it by `fill_mode`. Boxes of which there would be too many are larger.
     pub(super) fn voxelized(
         vertices: &[Vector],
         indices: &[[u32; DIM]],

@@ -1,7 +1,8 @@
 //! Queries of two [`Collider`]s at given poses: contacts, nearest points, distance, overlap, time of impact.
 //!
-//! They see colliders only, not bodies, layers or margins. [`SpatialQuery`](crate::spatial_query::SpatialQuery) searches
-//! the world. The kernel answers for shapes that it has, parry for the others.
+//! They see colliders only, not bodies, layers or margins.
+//! [`SpatialQuery`](crate::spatial_query::SpatialQuery) searches the world. The kernel answers for shapes
+//! that it has, parry for the others.
 //!
 //! ```
 //! # use avian::{collision::collider::contact_query, math::*, prelude::*};
@@ -22,7 +23,9 @@ use crate::physics_transform::{Position, Rotation, world_pose};
 use bevy_reflect::Reflect;
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
-use kernel::manifold::{CompositeBuffers, FeatureCache, LocalManifold, Look, collide, collide_composite};
+use kernel::manifold::{
+    CompositeBuffers, FeatureCache, LocalManifold, ManifoldQuery, collide, collide_composite,
+};
 use kernel::math::{self as k, WorldPose};
 use kernel::query::{CastConfig, Closest, cast_shape, closest, overlaps};
 use kernel::shape::Shape;
@@ -127,8 +130,8 @@ fn usable_distance(distance: Scalar) -> Scalar {
 /// The longest distance that parry is asked for, in metres: the square of a longer one overflows.
 const LONGEST: Scalar = 1.0e15;
 
-/// The deepest point of contact, or the nearest points if the colliders are no farther apart than `prediction_distance`
-/// metres.
+/// The deepest point of contact, or the nearest points if the colliders are no farther apart than
+/// `prediction_distance` metres.
 ///
 /// `None` if they are farther apart, or if a number is not finite.
 ///
@@ -172,7 +175,8 @@ pub fn contact(
     }))
 }
 
-/// Replaces `manifolds` by the contact manifolds of two colliders, with points up to `prediction_distance` metres apart.
+/// Replaces `manifolds` by the contact manifolds of two colliders, with points up to `prediction_distance`
+/// metres apart.
 ///
 /// Anchors are from the positions given, in world axes. There are none if a number is not finite.
 #[expect(clippy::too_many_arguments, reason = "as in Avian")]
@@ -193,8 +197,8 @@ pub fn contact_manifolds(
     let mut found = Vec::new();
     match pair.native() {
         Some([a, b]) if matches!(a, Shape::Composite(_)) || matches!(b, Shape::Composite(_)) => {
-            let look = Look::up_to(prediction);
-            collide_composite(a, b, &pair.relative, look, &mut CompositeBuffers::default(), &mut found);
+            let query = ManifoldQuery::up_to(prediction);
+            collide_composite(a, b, &pair.relative, query, &mut CompositeBuffers::default(), &mut found);
         }
         Some([a, b]) => {
             let mut local = LocalManifold::default();
@@ -217,8 +221,8 @@ pub fn contact_manifolds(
     }
 }
 
-/// The nearest points of two colliders that are no farther apart than `max_distance` metres. Colliders at a number that is
-/// not finite are farther apart.
+/// The nearest points of two colliders that are no farther apart than `max_distance` metres. Colliders at a
+/// number that is not finite are farther apart.
 ///
 /// # Errors
 ///
@@ -252,7 +256,8 @@ pub fn closest_points(
     })
 }
 
-/// The distance between two colliders in metres, 0 if they touch or overlap. Infinite at a number that is not finite.
+/// The distance between two colliders in metres, 0 if they touch or overlap. Infinite at a number that
+/// is not finite.
 ///
 /// # Errors
 ///

@@ -62,8 +62,8 @@ pub(super) fn height_field_elements(field: &HeightField) -> impl Iterator<Item =
     field.segments().map(SharedShape::new)
 }
 
-/// The scale along the axes of a part rotated by `rotation`. Exact for quarter turns. Otherwise the lengths of the
-/// scaled axes, since no shape can be sheared.
+/// The scale along the axes of a part rotated by `rotation`. Exact for quarter turns. Otherwise the lengths
+/// of the scaled axes, since no shape can be sheared.
 pub(super) fn scale_in_frame(scale: Vector, rotation: Rot2) -> Vector {
     if scale.x == scale.y {
         return scale;

@@ -56,8 +56,8 @@ pub(super) fn height_field_elements(field: &HeightField) -> impl Iterator<Item =
     field.triangles().map(SharedShape::new)
 }
 
-/// The scale along the axes of a part rotated by `rotation`. Exact for quarter turns. Otherwise the lengths of the
-/// scaled axes, since no shape can be sheared.
+/// The scale along the axes of a part rotated by `rotation`. Exact for quarter turns. Otherwise the lengths
+/// of the scaled axes, since no shape can be sheared.
 pub(super) fn scale_in_frame(scale: Vector, rotation: ParryRotation) -> Vector {
     if scale.x == scale.y && scale.y == scale.z {
         return scale;
@@ -115,8 +115,8 @@ fn native_curved(shape: Result<Curved, ShapeError>) -> Option<NativeShape> {
     shape.ok().map(NativeShape::Curved)
 }
 
-/// The polyhedron of the kernel, if it takes it. Parry's hulls of scattered points have slightly concave edges where faces
-/// are nearly in one plane; the kernel then finds the hull of their corners.
+/// The polyhedron of the kernel, if it takes it. Parry's hulls of scattered points have slightly concave
+/// edges where faces are nearly in one plane; the kernel then finds the hull of their corners.
 fn hull_of(polyhedron: &ConvexPolyhedron) -> Option<Hull> {
     let vertices: Vec<_> = polyhedron.points().iter().map(|v| vector_to_kernel(*v)).collect();
     let faces: Vec<Vec<u32>> = polyhedron

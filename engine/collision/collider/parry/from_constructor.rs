@@ -9,9 +9,10 @@ use crate::collision::collider::constructor::ColliderConstructor;
 impl Collider {
     /// The collider that a constructor describes; `None` if its values make no shape.
     ///
-    /// Unlike the constructors of `Collider`, this repairs neither NaN nor sizes that are zero or negative, but for heights of
-    /// height fields and parameters of decompositions. Single elements of a mesh that cannot be used are left out. Constructors from meshes return `None` without a mesh, or
-    /// if it has no triangles or its data was moved to the render world.
+    /// Unlike the constructors of `Collider`, this repairs neither NaN nor sizes that are zero or negative,
+    /// but for heights of height fields and parameters of decompositions. Single elements of a mesh that
+    /// cannot be used are left out. Constructors from meshes return `None` without a mesh, or if it has no
+    /// triangles or its data was moved to the render world.
     #[cfg(feature = "collider-from-mesh")]
     pub fn try_from_constructor(
         collider_constructor: ColliderConstructor,
@@ -22,9 +23,9 @@ impl Collider {
 
     /// The collider that a constructor describes; `None` if its values make no shape.
     ///
-    /// Unlike the constructors of `Collider`, this repairs neither NaN nor sizes that are zero or negative, but for heights of
-    /// height fields and parameters of decompositions. Single elements of a mesh that cannot be used are left out. With feature `collider-from-mesh` there is a second
-    /// parameter: the mesh.
+    /// Unlike the constructors of `Collider`, this repairs neither NaN nor sizes that are zero or negative,
+    /// but for heights of height fields and parameters of decompositions. Single elements of a mesh that
+    /// cannot be used are left out. With feature `collider-from-mesh` there is a second parameter: the mesh.
     #[cfg(not(feature = "collider-from-mesh"))]
     pub fn try_from_constructor(collider_constructor: ColliderConstructor) -> Option<Self> {
         Self::from_constructor(&collider_constructor, None).ok()

@@ -11,13 +11,14 @@ use super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// The preprocessing of meshes. Their corners are doubled where normals or texture coordinates differ, and grids of
-/// spheres have flat triangles at their poles.
+/// The preprocessing of meshes. Their corners are doubled where normals or texture coordinates differ, and
+/// grids of spheres have flat triangles at their poles.
 pub(super) const OF_MESH: TrimeshFlags =
     TrimeshFlags::MERGE_DUPLICATE_VERTICES.union(TrimeshFlags::DELETE_DEGENERATE_TRIANGLES);
 
 impl Collider {
-    /// The triangles of a mesh. Vertices at the same place are joined, and triangles without an area left out.
+    /// The triangles of a mesh. Vertices at the same place are joined, and triangles without an
+    /// area left out.
     ///
     /// `None` if the mesh has no triangles that can be used, or if its data was moved to the render world
     /// (`RenderAssetUsages`). In 2D the Z coordinate is ignored. That holds for all constructors from meshes.
@@ -49,7 +50,8 @@ impl Collider {
         convex_decomposition(mesh, &VhacdParameters::default()).ok()
     }
 
-    /// Convex shapes that together approximate the inside of a closed mesh, in 2D of its outline, with parameters.
+    /// Convex shapes that together approximate the inside of a closed mesh, in 2D of its outline,
+    /// with parameters.
     pub fn convex_decomposition_from_mesh_with_config(
         mesh: &Mesh,
         parameters: &VhacdParameters,
@@ -59,7 +61,8 @@ impl Collider {
 
     /// The boxes that a mesh passes through, in 2D its outline, and those inside of it by `fill_mode`.
     ///
-    /// `None` also if the size is not positive, or so small that there would be more than 8 million boxes around it.
+    /// `None` also if the size is not positive, or so small that there would be more than 8 million
+    /// boxes around it.
     pub fn voxelized_trimesh_from_mesh(mesh: &Mesh, voxel_size: Scalar, fill_mode: FillMode) -> Option<Self> {
         voxelized_trimesh(mesh, voxel_size, fill_mode).ok()
     }

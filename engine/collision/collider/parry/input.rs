@@ -1,15 +1,15 @@
 //! Validates the input of constructors: no NaN, no infinity, no sizes that make no shape.
 //!
-//! Constructors without a `Result` repair their input and warn, once per constructor. A game then continues with a tiny
-//! collider, and no NaN enters the engine.
+//! Constructors without a `Result` repair their input and warn, once per constructor. A game then continues
+//! with a tiny collider, and no NaN enters the engine.
 
 use crate::math::{Scalar, Vector};
 
 /// Minimum size of a shape, in metres. Smaller sizes and NaN become this.
 pub(super) const MIN_LENGTH: Scalar = 1.0e-5;
 
-/// Maximum size and coordinate, in metres. Moments of inertia grow with the fifth power of lengths and are squared:
-/// larger values would overflow `f32`.
+/// Maximum size and coordinate, in metres. Moments of inertia grow with the fifth power of lengths and are
+/// squared: larger values would overflow `f32`.
 pub(super) const MAX_LENGTH: Scalar = 1.0e7;
 
 /// Checks the input of one constructor, and records whether a value was repaired.

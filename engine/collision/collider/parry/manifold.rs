@@ -37,15 +37,15 @@ pub(crate) fn foreign_ball_manifolds(
     parry_manifolds(collider.shape_scaled(), &ball, &pose, prediction, out);
 }
 
-/// Appends the contact manifolds of two shapes: one for convex shapes, one per touching part for composite ones, none
-/// for pairs that parry does not support.
+/// Appends the contact manifolds of two shapes: one for convex shapes, one per touching part for composite
+/// ones, none for pairs that parry does not support.
 ///
-/// `pose` is the pose of shape 2 in the frame of shape 1. Manifolds are in that frame, with normals from 1 to 2, and
-/// points midway between the surfaces, separated by at most `prediction` metres. A manifold has at most `MAX_POINTS`:
-/// the deepest, and those that spread widest. Feature ids of different part pairs differ.
+/// `pose` is the pose of shape 2 in the frame of shape 1. Manifolds are in that frame, with normals from 1 to
+/// 2, and points midway between the surfaces, separated by at most `prediction` metres. A manifold has at
+/// most `MAX_POINTS`: the deepest, and those that spread widest. Feature ids of different part pairs differ.
 ///
-/// Parry could start from its last result for the pair. It does not, so that the result depends only on the shapes and
-/// the pose, as everything in a step does.
+/// Parry could start from its last result for the pair. It does not, so that the result depends only on the
+/// shapes and the pose, as everything in a step does.
 pub(crate) fn parry_manifolds(
     shape1: &SharedShape,
     shape2: &SharedShape,

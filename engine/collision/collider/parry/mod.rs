@@ -1,8 +1,8 @@
 //! [`Collider`], the default collider: a shape of parry with a scale.
 //!
-//! `constructors`, `shapes2` and `shapes3` make colliders, `from_constructor` and `from_mesh` those that are described by
-//! data and by meshes, `native` converts their shapes for the kernel, and
-//! `manifold` computes contacts of shapes that the kernel does not have.
+//! `constructors`, `shapes2` and `shapes3` make colliders, `from_constructor` and `from_mesh` those that are
+//! described by data and by meshes, `native` converts their shapes for the kernel, and `manifold` computes
+//! contacts of shapes that the kernel does not have.
 
 mod any_collider;
 mod cells;
@@ -72,8 +72,8 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 
 /// The shape of a body for collisions and spatial queries.
 ///
-/// On an entity with a `RigidBody` it is that body's collider. On a descendant it belongs to the nearest body above.
-/// Without a body it only answers queries and detects contacts. Cheap to clone: the shape is shared.
+/// On an entity with a `RigidBody` it is that body's collider. On a descendant it belongs to the nearest body
+/// above. Without a body it only answers queries and detects contacts. Cheap to clone: the shape is shared.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -86,14 +86,15 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 /// }
 /// ```
 ///
-/// Constructors without a `Result` or `Option` never fail: invalid values (NaN, negative or zero sizes, indices out of
-/// range) are repaired, with one warning per constructor. Sizes become positive and at least 10 µm. If nothing is left,
-/// the collider is a ball of that size. Each has a twin whose name starts with `try_`, which returns a [`ColliderError`]
-/// instead.
+/// Constructors without a `Result` or `Option` never fail: invalid values (NaN, negative or zero sizes,
+/// indices out of range) are repaired, with one warning per constructor. Sizes become positive and at least
+/// 10 µm. If nothing is left, the collider is a ball of that size. Each has a twin whose name starts with
+/// `try_`, which returns a [`ColliderError`] instead.
 ///
-/// With feature `serialize` a collider is stored as the definition of its shape and its scale, and is read back with
-/// the same bits. A definition that makes no shape is an error. Custom shape types cannot be stored. With this feature colliders
-/// are part of Bevy's worlds in files (`DynamicWorldBuilder`), as all other components are: the example `save_and_load`.
+/// With feature `serialize` a collider is stored as the definition of its shape and its scale, and is read
+/// back with the same bits. A definition that makes no shape is an error. Custom shape types cannot be
+/// stored. With this feature colliders are part of Bevy's worlds in files (`DynamicWorldBuilder`), as all
+/// other components are: the example `save_and_load`.
 ///
 /// Parry's shapes are available in their own types: `Collider::from(SharedShape)` accepts any of them, and
 /// [`shape_scaled`](Self::shape_scaled) returns the one the engine uses.
@@ -205,15 +206,16 @@ impl Collider {
 
     /// Sets the scale along each axis. A negative scale mirrors the shape.
     ///
-    /// On an entity with a `Transform` the scale of its `GlobalTransform` replaces this one before the next step, unless
-    /// [`PhysicsTransformConfig::transform_to_collider_scale`] is off.
+    /// On an entity with a `Transform` the scale of its `GlobalTransform` replaces this one before the next
+    /// step, unless [`PhysicsTransformConfig::transform_to_collider_scale`] is off.
     ///
-    /// A curved shape that is scaled unevenly becomes a convex hull, with about `num_subdivisions` points per quarter
-    /// turn. Rounded edges stay round, with a radius that follows the smallest scale. A turned part of a compound that is
-    /// scaled unevenly keeps its angles: no shape is sheared.
+    /// A curved shape that is scaled unevenly becomes a convex hull, with about `num_subdivisions` points per
+    /// quarter turn. Rounded edges stay round, with a radius that follows the smallest scale. A turned part
+    /// of a compound that is scaled unevenly keeps its angles: no shape is sheared.
     ///
-    /// A scale that is not finite is ignored with a warning. An axis with a scale of almost zero keeps 1/100,000 of its
-    /// length. If a shape cannot be scaled, a warning is given and the collider keeps its scale.
+    /// A scale that is not finite is ignored with a warning. An axis with a scale of almost zero
+    /// keeps 1/100,000 of its length. If a shape cannot be scaled, a warning is given and the
+    /// collider keeps its scale.
     ///
     /// [`PhysicsTransformConfig::transform_to_collider_scale`]:
     ///     crate::physics_transform::PhysicsTransformConfig::transform_to_collider_scale
@@ -232,12 +234,13 @@ impl Collider {
         }
     }
 
-    /// Sets the scale along each axis as [`set_scale`](Self::set_scale) does, or keeps it and returns an error.
+    /// Sets the scale along each axis as [`set_scale`](Self::set_scale) does, or keeps it and
+    /// returns an error.
     ///
     /// # Errors
     ///
-    /// [`InvalidScale`](ColliderError::InvalidScale) if the scale is not finite or an axis has less than 1/100,000;
-    /// [`UnscalableShape`](ColliderError::UnscalableShape).
+    /// [`InvalidScale`](ColliderError::InvalidScale) if the scale is not finite or an axis has less than
+    /// 1/100,000; [`UnscalableShape`](ColliderError::UnscalableShape).
     pub fn try_set_scale(&mut self, scale: Vector, num_subdivisions: u32) -> Result<(), ColliderError> {
         if !(scale.is_finite() && scale.abs().min_element() >= input::MIN_LENGTH) {
             return Err(ColliderError::InvalidScale);
@@ -257,8 +260,8 @@ impl Collider {
     }
 }
 
-/// The shape, if it has a finite extent (parry's own constructors accept any number). Otherwise a tiny ball, with one
-/// warning.
+/// The shape, if it has a finite extent (parry's own constructors accept any number). Otherwise a tiny ball,
+/// with one warning.
 fn usable(shape: SharedShape) -> SharedShape {
     if has_extent(&shape) {
         return shape;

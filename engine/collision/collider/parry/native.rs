@@ -1,5 +1,5 @@
-//! Conversion of parry's shapes to the kernel's: a native shape where the kernel has one, otherwise a box whose
-//! contacts parry computes.
+//! Conversion of parry's shapes to the kernel's: a native shape where the kernel has one, otherwise a box
+//! whose contacts parry computes.
 
 use super::super::custom::{round_down, round_up};
 use super::{dim, native_composite};
@@ -9,10 +9,11 @@ use kernel::shape::{Aabb, Ball, Capsule, Cuboid, Foreign, HalfSpace, Segment, Sh
 
 /// The kernel's shape for a shape of parry, in `f32`.
 ///
-/// Balls, capsules, cuboids, triangles, segments, half-spaces, ellipses, cylinders and cones become themselves. Convex
-/// polygons and polyhedra with or without a radius, regular polygons, round rectangles and boxes become hulls, if the
-/// kernel has room for their features. Meshes, lines, height fields, voxels and compounds of native shapes become
-/// composites. All other shapes, and shapes with coordinates that are not finite, are foreign.
+/// Balls, capsules, cuboids, triangles, segments, half-spaces, ellipses, cylinders and cones become
+/// themselves. Convex polygons and polyhedra with or without a radius, regular polygons, round rectangles and
+/// boxes become hulls, if the kernel has room for their features. Meshes, lines, height fields, voxels and
+/// compounds of native shapes become composites. All other shapes, and shapes with coordinates that are not
+/// finite, are foreign.
 pub(crate) fn native_shape(shape: &SharedShape) -> Shape {
     native(shape.as_typed_shape()).unwrap_or_else(|| Shape::Foreign(foreign(shape)))
 }

@@ -1,5 +1,5 @@
-//! Settings of mesh colliders, convex decomposition and voxelisation. Parry's own types have a dimension and a
-//! precision in their path, and no reflection.
+//! Settings of mesh colliders, convex decomposition and voxelisation. Parry's own types have a dimension and
+//! a precision in their path, and no reflection.
 
 use crate::math::Scalar;
 use bevy_reflect::Reflect;

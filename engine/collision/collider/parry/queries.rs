@@ -1,4 +1,5 @@
-//! Queries of one [`Collider`] at a pose: points and rays. The kernel answers for its own shapes, parry for others.
+//! Queries of one [`Collider`] at a pose: points and rays. The kernel answers for its own shapes,
+//! parry for others.
 
 use super::{Collider, dim};
 use crate::math::{Scalar, Vector, vector_from_kernel, world_from_kernel, world_to_kernel};
@@ -108,8 +109,8 @@ impl Collider {
         self.cast_ray(translation, rotation, ray_origin, ray_direction, max_distance, true).is_some()
     }
 
-    /// The kernel's shape and its pose, if the kernel answers for points. It does not know the inside of surfaces, which
-    /// a mesh may have, and takes no pose or point that is not finite.
+    /// The kernel's shape and its pose, if the kernel answers for points. It does not know the inside of
+    /// surfaces, which a mesh may have, and takes no pose or point that is not finite.
     fn native_at(
         &self,
         position: &Position,

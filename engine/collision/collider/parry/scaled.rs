@@ -1,8 +1,8 @@
 //! Scaled shapes. A scale is applied in two parts: first it mirrors, then it stretches.
 //!
-//! A mirror of axes maps every shape onto one of its kind, or onto a turned one, so it is exact. Parry scales by factors
-//! of any sign, but keeps the windings of mirrored polygons, hulls and meshes, and has no mirrored voxels, height fields
-//! and cones. It also scales normals like points, which is right for even scales only.
+//! A mirror of axes maps every shape onto one of its kind, or onto a turned one, so it is exact. Parry scales
+//! by factors of any sign, but keeps the windings of mirrored polygons, hulls and meshes, and has no mirrored
+//! voxels, height fields and cones. It also scales normals like points, which is right for even scales only.
 
 use super::composite::flatten;
 use super::dim;

@@ -1,8 +1,8 @@
 //! Constructors that refuse what those of [`Collider`] repair, and the checks that they and
 //! [`ColliderConstructor`](crate::collision::collider::ColliderConstructor) share.
 //!
-//! A repaired collider suits values in code: the warning names the constructor. Values from files and editors need an error
-//! at the place that read them.
+//! A repaired collider suits values in code: the warning names the constructor. Values from files and editors
+//! need an error at the place that read them.
 
 use super::{
     Collider, ColliderError as Error, TrimeshFlags, VhacdParameters,
@@ -114,7 +114,8 @@ impl Collider {
     ///
     /// # Errors
     ///
-    /// [`InvalidSize`](Error::InvalidSize) for the radius, [`NegativeSize`](Error::NegativeSize) for the length.
+    /// [`InvalidSize`](Error::InvalidSize) for the radius, [`NegativeSize`](Error::NegativeSize)
+    /// for the length.
     pub fn try_capsule(radius: Scalar, length: Scalar) -> Result<Self, Error> {
         sizes(&[radius])?;
         sizes_or_zero(&[length])?;
@@ -196,7 +197,8 @@ impl Collider {
     ///
     /// # Errors
     ///
-    /// [`InvalidSize`](Error::InvalidSize), [`InvalidVoxel`](Error::InvalidVoxel), [`NoVoxels`](Error::NoVoxels).
+    /// [`InvalidSize`](Error::InvalidSize), [`InvalidVoxel`](Error::InvalidVoxel),
+    /// [`NoVoxels`](Error::NoVoxels).
     pub fn try_voxels(voxel_size: Vector, grid_coordinates: &[IVector]) -> Result<Self, Error> {
         sizes(&voxel_size.to_array())?;
         if let Some(bad) = grid_coordinates.iter().position(|cell| !is_in_range(cell)) {
@@ -209,8 +211,8 @@ impl Collider {
     ///
     /// # Errors
     ///
-    /// [`InvalidSize`](Error::InvalidSize), [`InvalidVoxel`](Error::InvalidVoxel) for a point that is too many voxels away
-    /// or not finite, [`NoVoxels`](Error::NoVoxels).
+    /// [`InvalidSize`](Error::InvalidSize), [`InvalidVoxel`](Error::InvalidVoxel) for a point that is too
+    /// many voxels away or not finite, [`NoVoxels`](Error::NoVoxels).
     pub fn try_voxels_from_points(voxel_size: Vector, points: &[Vector]) -> Result<Self, Error> {
         sizes(&voxel_size.to_array())?;
         let in_range = |p: &Vector| (*p / voxel_size).abs().cmple(Vector::splat(MAX_VOXEL as Scalar)).all();

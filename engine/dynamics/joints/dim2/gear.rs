@@ -17,11 +17,12 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Lets two wheels turn together, as if they meshed: the angle of the first and `ratio` times that of the second keep their sum.
-/// Beyond Avian.
+/// Lets two wheels turn together, as if they meshed: the angle of the first and `ratio` times that of the
+/// second keep their sum. Beyond Avian.
 ///
-/// It ties turns only: each wheel needs a hinge of its own, such as a [`RevoluteJoint`](super::RevoluteJoint) to a post.
-/// Turns are counted, and nothing slips. Where the wheels are as the joint begins to act is where they mesh.
+/// It ties turns only: each wheel needs a hinge of its own, such as a
+/// [`RevoluteJoint`](super::RevoluteJoint) to a post. Turns are counted, and nothing slips. Where the wheels
+/// are as the joint begins to act is where they mesh.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -41,8 +42,8 @@ pub struct GearJoint {
     pub body1: Entity,
     /// The second wheel.
     pub body2: Entity,
-    /// The weight of the second angle. Positive for wheels that turn in opposite ways, negative for a chain or a wheel inside of a
-    /// ring. Not 0.
+    /// The weight of the second angle. Positive for wheels that turn in opposite ways, negative for a chain
+    /// or a wheel inside of a ring. Not 0.
     pub ratio: Scalar,
     /// How far the teeth give way, in rad/(N·m) at the first wheel. 0 for not at all.
     pub compliance: Scalar,

@@ -52,8 +52,8 @@ impl JointBasis {
 }
 
 impl AngleLimit {
-    /// The angle in radians by which the second body has to turn to be within the limits, at most `max_correction`. `None`
-    /// within them.
+    /// The angle in radians by which the second body has to turn to be within the limits, at most
+    /// `max_correction`. `None` within them.
     pub fn compute_correction(&self, angle_difference: Scalar, max_correction: Scalar) -> Option<Scalar> {
         let excess = self.excess(angle_difference);
         (excess != 0.0).then(|| (-excess).max(-max_correction).min(max_correction))

@@ -19,9 +19,9 @@ use crate::math::{Scalar, Vector};
 
 /// Lets a rack slide as a pinion turns: a radian moves it by the pinion's radius. Beyond Avian.
 ///
-/// It ties both only: the pinion needs a hinge of its own, such as a [`RevoluteJoint`](super::RevoluteJoint), and the rack a slide, such
-/// as a [`PrismaticJoint`](super::PrismaticJoint). Turns are counted, and nothing slips. Where both are as the joint begins to
-/// act is where they mesh.
+/// It ties both only: the pinion needs a hinge of its own, such as a [`RevoluteJoint`](super::RevoluteJoint),
+/// and the rack a slide, such as a [`PrismaticJoint`](super::PrismaticJoint). Turns are counted, and nothing
+/// slips. Where both are as the joint begins to act is where they mesh.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -42,7 +42,8 @@ pub struct RackAndPinionJoint {
     pub body1: Entity,
     /// The rack.
     pub body2: Entity,
-    /// The direction in the world in which the rack moves as the pinion turns counter-clockwise. Its length does not matter.
+    /// The direction in the world in which the rack moves as the pinion turns counter-clockwise. Its length
+    /// does not matter.
     pub rack_axis: Vector,
     /// The radius of the pinion, in metres. Not 0.
     pub radius: Scalar,

@@ -21,8 +21,8 @@ use crate::math::{Scalar, Vector};
 
 /// Holds a point of one body at a point of another, and lets them turn about it: pins, wheels, hinges.
 ///
-/// The angle is that of the second basis relative to the first, counter-clockwise. It may have limits, also beyond a full turn,
-/// and a motor.
+/// The angle is that of the second basis relative to the first, counter-clockwise. It may have limits, also
+/// beyond a full turn, and a motor.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};

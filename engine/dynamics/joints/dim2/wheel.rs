@@ -27,14 +27,14 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds a wheel, the second body, on a chassis, the first: it moves along the suspension's axis by a spring, and spins. Beyond
-/// Avian.
+/// Holds a wheel, the second body, on a chassis, the first: it moves along the suspension's axis by a spring,
+/// and spins. Beyond Avian.
 ///
 /// The wheel turns about the second anchor. Where it touches the ground, friction drives the chassis.
 ///
 /// The spring is a motor along the axis, whose target is its length without load. With
-/// [`MotorModel::SpringDamper`] its stiffness follows from the lighter body, which is the wheel; give it in N/m by
-/// [`MotorModel::ForceBased`] to choose how far the chassis sags: by its weight over the stiffness.
+/// [`MotorModel::SpringDamper`] its stiffness follows from the lighter body, which is the wheel; give it in
+/// N/m by [`MotorModel::ForceBased`] to choose how far the chassis sags: by its weight over the stiffness.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};

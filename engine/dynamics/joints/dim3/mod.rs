@@ -61,7 +61,8 @@ from_axes! {
     from_local_yz, from_global_yz: "y", "z" => |y_axis, z_axis, x_axis| [x_axis, y_axis, z_axis];
 }
 
-/// The rotation to axes that are made of the first vector, what the second has across it, and the normal of both.
+/// The rotation to axes that are made of the first vector, what the second has across it, and the
+/// normal of both.
 fn from_plane(
     first: Vector,
     second: Vector,
@@ -76,8 +77,8 @@ fn from_plane(
 }
 
 impl AngleLimit {
-    /// The rotation vector in radians by which the second body has to turn to be within the limits, at most `max_correction`
-    /// long. `None` within them.
+    /// The rotation vector in radians by which the second body has to turn to be within the limits, at most
+    /// `max_correction` long. `None` within them.
     ///
     /// The angle is that from `axis1` to `axis2` about `limit_axis`. All have unit length.
     pub fn compute_correction(

@@ -19,9 +19,10 @@ use crate::math::{Scalar, Vector};
 
 /// Lets a rack slide as a pinion turns: a radian moves it by the pinion's radius. Beyond Avian.
 ///
-/// It ties both only: the pinion needs a hinge of its own, such as a [`RevoluteJoint`](super::RevoluteJoint), and the rack a slide, such
-/// as a [`PrismaticJoint`](super::PrismaticJoint), both about axes that are fixed in the world. Turns are counted, and nothing slips. Where both are as the joint begins to
-/// act is where they mesh.
+/// It ties both only: the pinion needs a hinge of its own, such as a
+/// [`RevoluteJoint`](super::RevoluteJoint), and the rack a slide, such as a
+/// [`PrismaticJoint`](super::PrismaticJoint), both about axes that are fixed in the world. Turns are
+/// counted, and nothing slips. Where both are as the joint begins to act is where they mesh.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -44,7 +45,8 @@ pub struct RackAndPinionJoint {
     pub body2: Entity,
     /// The axis in the world about which the pinion turns. Its length does not matter.
     pub pinion_axis: Vector,
-    /// The direction in the world in which the rack moves as the pinion turns right-handed about its axis. Its length does not matter.
+    /// The direction in the world in which the rack moves as the pinion turns right-handed about its axis.
+    /// Its length does not matter.
     pub rack_axis: Vector,
     /// The radius of the pinion, in metres. Not 0.
     pub radius: Scalar,
@@ -66,7 +68,8 @@ impl RackAndPinionJoint {
         self
     }
 
-    /// Sets the direction in the world in which the rack moves as the pinion turns right-handed about its axis.
+    /// Sets the direction in the world in which the rack moves as the pinion turns right-handed
+    /// about its axis.
     pub const fn with_rack_axis(mut self, axis: Vector) -> Self {
         self.rack_axis = axis;
         self

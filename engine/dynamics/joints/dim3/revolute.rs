@@ -25,11 +25,11 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds a point and an axis of one body at a point and an axis of another, and lets them turn about the axis: hinges,
-/// doors, wheels.
+/// Holds a point and an axis of one body at a point and an axis of another, and lets them turn about the
+/// axis: hinges, doors, wheels.
 ///
-/// The angle is that of the second basis relative to the first about the axis, right-handed. It may have limits, also beyond a
-/// full turn, and a motor.
+/// The angle is that of the second basis relative to the first about the axis, right-handed. It may have
+/// limits, also beyond a full turn, and a motor.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};

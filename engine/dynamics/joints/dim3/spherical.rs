@@ -26,10 +26,11 @@ use super::super::{
 use super::spherical_motor::SphericalMotor;
 use crate::math::{Scalar, Vector};
 
-/// Holds a point of one body at a point of another, and lets them turn in any way: shoulders, chains, trailers.
+/// Holds a point of one body at a point of another, and lets them turn in any way: shoulders,
+/// chains, trailers.
 ///
-/// Swing is the angle between the twist axes of both frames, from 0 to π. Twist is the angle about them. Both may have
-/// limits, and a motor turns the ball to a rotation.
+/// Swing is the angle between the twist axes of both frames, from 0 to π. Twist is the angle about them. Both
+/// may have limits, and a motor turns the ball to a rotation.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -59,7 +60,8 @@ pub struct SphericalJoint {
     pub frame2: JointFrame,
     /// The direction of the twist axis in the joint's frames. Its length does not matter.
     pub twist_axis: Vector,
-    /// The least and the greatest swing, if there are any. It is never negative, so a least value below 0 has no effect.
+    /// The least and the greatest swing, if there are any. It is never negative, so a least value below 0
+    /// has no effect.
     pub swing_limit: Option<AngleLimit>,
     /// The least and the greatest twist, if there are any.
     pub twist_limit: Option<AngleLimit>,

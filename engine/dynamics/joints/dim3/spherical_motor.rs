@@ -20,11 +20,11 @@ use crate::{
     physics_transform::Rotation,
 };
 
-/// A motor that turns the second body of a [`SphericalJoint`](super::SphericalJoint) to a rotation and an angular velocity. Beyond
-/// Avian.
+/// A motor that turns the second body of a [`SphericalJoint`](super::SphericalJoint) to a rotation and an
+/// angular velocity. Beyond Avian.
 ///
-/// Targets may change in every frame: an animated skeleton whose bones are set as targets is followed as far as the torque
-/// reaches.
+/// Targets may change in every frame: an animated skeleton whose bones are set as targets is followed as far
+/// as the torque reaches.
 ///
 /// ```
 /// # use avian3d::prelude::*;
@@ -47,8 +47,8 @@ pub struct SphericalMotor {
     pub enabled: bool,
     /// The wanted rotation of the joint's second frame in its first.
     pub target_rotation: Quaternion,
-    /// The wanted angular velocity of the second body relative to the first, along the axes of the joint's first frame, in
-    /// rad/s.
+    /// The wanted angular velocity of the second body relative to the first, along the axes of the joint's
+    /// first frame, in rad/s.
     pub target_velocity: Vector,
     /// How strongly it turns, about which axes.
     pub drive: SphericalDrive,
@@ -148,7 +148,8 @@ impl SphericalMotor {
         self
     }
 
-    /// Sets the greatest torque, in N·m: along the shortest arc that about any axis, else that about each axis.
+    /// Sets the greatest torque, in N·m: along the shortest arc that about any axis, else that
+    /// about each axis.
     pub const fn with_max_torque(mut self, max_torque: Scalar) -> Self {
         match &mut self.drive {
             SphericalDrive::Slerp(drive) => drive.max_torque = max_torque,
@@ -200,7 +201,8 @@ impl SphericalMotor {
 
 /// The angle of a rotation about x, and the vector across x of the swing that follows it, in rad.
 ///
-/// With q = swing · twist, twist is the part of q about x, of half angle atan2(qx, qw), and swing is q times its inverse.
+/// With q = swing · twist, twist is the part of q about x, of half angle atan2(qx, qw), and swing is q
+/// times its inverse.
 fn twist_and_swing(q: KernelRot) -> [f32; 3] {
     let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
     let [x, y, z, w] = [q.x, q.y, q.z, q.w].map(|part| f64::from(part * sign));

@@ -27,15 +27,15 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds a wheel, the second body, on a chassis, the first: it moves along the suspension's axis by a spring, and spins. Beyond
-/// Avian.
+/// Holds a wheel, the second body, on a chassis, the first: it moves along the suspension's axis by a spring,
+/// and spins. Beyond Avian.
 ///
-/// The wheel spins about its axle. It is steered about the suspension's axis: by a motor, to its target angle. While that motor is
-/// disabled the axle is held across.
+/// The wheel spins about its axle. It is steered about the suspension's axis: by a motor, to its target
+/// angle. While that motor is disabled the axle is held across.
 ///
 /// The spring is a motor along the axis, whose target is its length without load. With
-/// [`MotorModel::SpringDamper`] its stiffness follows from the lighter body, which is the wheel; give it in N/m by
-/// [`MotorModel::ForceBased`] to choose how far the chassis sags: by its weight over the stiffness.
+/// [`MotorModel::SpringDamper`] its stiffness follows from the lighter body, which is the wheel; give it in
+/// N/m by [`MotorModel::ForceBased`] to choose how far the chassis sags: by its weight over the stiffness.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -65,8 +65,8 @@ pub struct WheelJoint {
     pub frame1: JointFrame,
     /// The frame on the wheel.
     pub frame2: JointFrame,
-    /// The direction of the suspension in the joint's frames. What it has along the axle does not count, and its length does not
-    /// matter.
+    /// The direction of the suspension in the joint's frames. What it has along the axle does not count, and
+    /// its length does not matter.
     pub suspension_axis: Vector,
     /// The direction of the axle in the joint's frames. Its length does not matter.
     pub axle: Vector,
@@ -74,9 +74,11 @@ pub struct WheelJoint {
     pub suspension: LinearMotor,
     /// The least and the greatest position along the suspension's axis, in metres, if there are any.
     pub suspension_limits: Option<DistanceLimit>,
-    /// The motor that steers: the wheel's axle about the suspension's axis, right-handed. Disabled by default.
+    /// The motor that steers: the wheel's axle about the suspension's axis, right-handed.
+    /// Disabled by default.
     pub steering: AngularMotor,
-    /// The least and the greatest angle of steering, in radians, if there are any. They are kept while the motor is enabled.
+    /// The least and the greatest angle of steering, in radians, if there are any. They are kept while the
+    /// motor is enabled.
     pub steering_limits: Option<AngleLimit>,
     /// The motor that spins the wheel. Disabled by default.
     pub motor: AngularMotor,

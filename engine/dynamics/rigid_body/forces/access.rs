@@ -18,10 +18,11 @@ use core::{
     sync::atomic::{AtomicBool, Ordering::Relaxed},
 };
 
-/// Access to a component: to write it, unless an earlier part of the same query reads it. Then only to read it.
+/// Access to a component: to write it, unless an earlier part of the same query reads it. Then
+/// only to read it.
 ///
-/// `&mut T` would make `Query<(&T, Forces)>` panic, and writing while the query gives out `&T` would be undefined
-/// behaviour. With `WRITES` false the access is read-only.
+/// `&mut T` would make `Query<(&T, Forces)>` panic, and writing while the query gives out `&T` would be
+/// undefined behaviour. With `WRITES` false the access is read-only.
 pub struct Access<T, const WRITES: bool>(PhantomData<T>);
 
 /// The state of an [`Access`] in a query.
@@ -73,9 +74,9 @@ impl<T: Component<Mutability = Mutable>> Accessed<'_, T> {
 type Write<T> = &'static mut T;
 type Read<T> = &'static T;
 
-// SAFETY: `fetch` writes the component only if `may_write`: then each call of `update_component_access` for this state
-// added write access, as `&mut T` does. Otherwise it reads, for which read access was added, or write access, which
-// includes it. Filters and matching are those of `&T` and `&mut T`, which are the same.
+// SAFETY: `fetch` writes the component only if `may_write`: then each call of `update_component_access` for
+// this state added write access, as `&mut T` does. Otherwise it reads, for which read access was added, or
+// write access, which includes it. Filters and matching are those of `&T` and `&mut T`, which are the same.
 unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery for Access<T, WRITES> {
     type Fetch<'w> = (<Write<T> as WorldQuery>::Fetch<'w>, <Read<T> as WorldQuery>::Fetch<'w>);
     type State = AccessState;

@@ -1,4 +1,5 @@
-//! From forces to the solver's rows: bodies with forces wake, and are accelerated in the substeps of one step.
+//! From forces to the solver's rows: bodies with forces wake, and are accelerated in the
+//! substeps of one step.
 
 use bevy_app::App;
 use bevy_ecs::{
@@ -164,7 +165,7 @@ pub(crate) fn follow_forces(
 
 fn wake(id: u32, tables: &mut Tables) {
     if id != NONE && tables.bodies.table[id].kind == BodyKind::Dynamic {
-        tables.link().wake_body(id);
+        tables.contact_manager().wake_body(id);
     }
 }
 

@@ -13,7 +13,8 @@ use crate::{
 
 /// A force on a dynamic body at its centre of mass, in N along the world's axes, in every step.
 ///
-/// Inserting, changing or removing it wakes the body. An unchanged force lets the body fall asleep where it rests.
+/// Inserting, changing or removing it wakes the body. An unchanged force lets the body fall asleep
+/// where it rests.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -46,8 +47,8 @@ pub struct ConstantTorque(pub AngularVector);
 
 type_path!(ConstantTorque, "dynamics::rigid_body::forces");
 
-/// A force on a dynamic body at its centre of mass, in N along the body's own axes, in every step. It turns with the
-/// body. See [`ConstantForce`].
+/// A force on a dynamic body at its centre of mass, in N along the body's own axes, in every step. It turns
+/// with the body. See [`ConstantForce`].
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -81,8 +82,8 @@ pub struct ConstantLinearAcceleration(pub Vector);
 
 type_path!(ConstantLinearAcceleration, "dynamics::rigid_body::forces");
 
-/// An angular acceleration of a dynamic body, in rad/s² about the world's axes, in every step, whatever the inertia.
-/// See [`ConstantForce`].
+/// An angular acceleration of a dynamic body, in rad/s² about the world's axes, in every step, whatever the
+/// inertia. See [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -94,8 +95,8 @@ pub struct ConstantAngularAcceleration(pub AngularVector);
 
 type_path!(ConstantAngularAcceleration, "dynamics::rigid_body::forces");
 
-/// An acceleration of a dynamic body, in m/s² along the body's own axes, in every step, whatever the mass. It turns
-/// with the body. See [`ConstantForce`].
+/// An acceleration of a dynamic body, in m/s² along the body's own axes, in every step, whatever the mass. It
+/// turns with the body. See [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(

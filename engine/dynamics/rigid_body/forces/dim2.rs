@@ -1,5 +1,5 @@
-//! Forces of 2D. `dim3.rs` exports the same names, and the torques in the body's frame, which 2D does not need: a
-//! torque is the same in all frames of the plane.
+//! Forces of 2D. `dim3.rs` exports the same names, and the torques in the body's frame, which 2D does not
+//! need: a torque is the same in all frames of the plane.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;

@@ -72,8 +72,8 @@ pub struct ConstantLocalTorque(pub AngularVector);
 
 crate::type_path::type_path!(ConstantLocalTorque, "dynamics::rigid_body::forces");
 
-/// An angular acceleration of a dynamic body, in rad/s² about the body's own axes, in every step, whatever the inertia.
-/// It turns with the body. See [`ConstantForce`].
+/// An angular acceleration of a dynamic body, in rad/s² about the body's own axes, in every step, whatever
+/// the inertia. It turns with the body. See [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -95,14 +95,15 @@ macro_rules! local_torque_methods {
             accumulate(self, "torque", |to| &mut to.local.angular, acceleration);
         }
 
-        /// Applies an angular impulse about the body's own axes, in N·m·s: it changes the angular velocity at once.
+        /// Applies an angular impulse about the body's own axes, in N·m·s: it changes the angular
+        /// velocity at once.
         fn apply_local_angular_impulse(&mut self, impulse: AngularVector) {
             let impulse = self.seen().rotation * impulse;
             self.apply_angular_impulse(impulse);
         }
 
-        /// Applies an angular acceleration about the body's own axes, in rad/s², that turns with the body during the
-        /// step, whatever the inertia.
+        /// Applies an angular acceleration about the body's own axes, in rad/s², that turns with the body
+        /// during the step, whatever the inertia.
         fn apply_local_angular_acceleration(&mut self, acceleration: AngularVector) {
             accumulate(self, "angular acceleration", |to| &mut to.local.angular, acceleration);
         }

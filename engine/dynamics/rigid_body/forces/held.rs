@@ -1,5 +1,5 @@
-//! Forces that were applied in ticks without a step, as while physics is paused. Those of the last such tick act in the
-//! next step, unless others are applied in the tick of that step.
+//! Forces that were applied in ticks without a step, as while physics is paused. Those of the last such tick
+//! act in the next step, unless others are applied in the tick of that step.
 
 use bevy_ecs::{prelude::*, system::SystemChangeTick};
 
@@ -11,8 +11,8 @@ use crate::{
     scan::{IN_TABLES, Since},
 };
 
-/// The accelerations of bodies in the last tick without a step in which any were applied: linear and angular ones in
-/// world axes, and those in the frame of the body.
+/// The accelerations of bodies in the last tick without a step in which any were applied: linear and angular
+/// ones in world axes, and those in the frame of the body.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct HeldForces(Noted<(Vector, AngularVector, AccumulatedLocalAcceleration)>);
 

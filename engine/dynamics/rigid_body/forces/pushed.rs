@@ -5,8 +5,8 @@ use core::ops::{Add, Sub};
 
 use crate::math::{AngularVector, Scalar, Vector};
 
-/// Changes of a body's velocity by [`Forces`](super::Forces) in a query that also reads the velocity, and so cannot be
-/// written to it at once. The next step applies them.
+/// Changes of a body's velocity by [`Forces`](super::Forces) in a query that also reads the velocity, and so
+/// cannot be written to it at once. The next step applies them.
 #[derive(Component, Clone, Debug, Default)]
 pub struct PushedVelocity {
     pub(super) linear: Push<Vector>,

@@ -26,8 +26,8 @@ use crate::{
 
 /// Query data that applies forces, torques, impulses and accelerations to bodies.
 ///
-/// The methods are those of [`ReadRigidBodyForces`] and [`WriteRigidBodyForces`], which are in the prelude. See the
-/// [module](super) for what acts when.
+/// The methods are those of [`ReadRigidBodyForces`] and [`WriteRigidBodyForces`], which are in the prelude.
+/// See the [module](super) for what acts when.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -49,9 +49,9 @@ use crate::{
 ///
 /// # Sleeping bodies
 ///
-/// A force, impulse or acceleration that is not zero wakes a sleeping body in the next step, also if physics is paused
-/// when it is applied. Applied through [`non_waking`](ForcesItem::non_waking), it has no effect on a sleeping body, and
-/// a force does not keep an awake one from falling asleep.
+/// A force, impulse or acceleration that is not zero wakes a sleeping body in the next step, also if physics
+/// is paused when it is applied. Applied through [`non_waking`](ForcesItem::non_waking), it has no effect on
+/// a sleeping body, and a force does not keep an awake one from falling asleep.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -65,10 +65,10 @@ use crate::{
 ///
 /// # Reading the velocity in the same query
 ///
-/// `Query<(&LinearVelocity, Forces)>` works, if the velocity stands before `Forces`. Impulses cannot write the velocity
-/// then, while the query gives it out. They are seen by all methods of `Forces` at once, and are written to the velocity
-/// at the start of the next step. [`linear_velocity`](ReadRigidBodyForces::linear_velocity) makes the extra query part
-/// unnecessary.
+/// `Query<(&LinearVelocity, Forces)>` works, if the velocity stands before `Forces`. Impulses cannot write
+/// the velocity then, while the query gives it out. They are seen by all methods of `Forces` at once, and are
+/// written to the velocity at the start of the next step.
+/// [`linear_velocity`](ReadRigidBodyForces::linear_velocity) makes the extra query part unnecessary.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -395,15 +395,15 @@ pub trait ReadRigidBodyForces: ReadRigidBodyForcesInternal {
         self.seen().angular_velocity
     }
 
-    /// The linear acceleration in world axes that was applied for the next step, in m/s². Gravity and constant forces
-    /// are not part of it.
+    /// The linear acceleration in world axes that was applied for the next step, in m/s². Gravity and
+    /// constant forces are not part of it.
     fn accumulated_linear_acceleration(&self) -> Vector {
         let seen = self.seen();
         seen.data.linear_increment + seen.rotation * seen.local.linear
     }
 
-    /// The angular acceleration in world axes that was applied for the next step, in rad/s². Constant torques are not
-    /// part of it.
+    /// The angular acceleration in world axes that was applied for the next step, in rad/s². Constant torques
+    /// are not part of it.
     fn accumulated_angular_acceleration(&self) -> AngularVector {
         let seen = self.seen();
         seen.data.angular_increment + seen.local.world_angular(seen.rotation)
@@ -419,8 +419,9 @@ pub trait ReadRigidBodyForces: ReadRigidBodyForcesInternal {
 
 /// Applies forces, torques, impulses and accelerations to a body. Implemented by the items of [`Forces`].
 ///
-/// Only dynamic bodies respond. Locked axes act as an infinite mass or inertia. Forces and accelerations add up and act
-/// during the next step; impulses change the velocity at once. A value that is not finite is ignored, with one warning.
+/// Only dynamic bodies respond. Locked axes act as an infinite mass or inertia. Forces and accelerations add
+/// up and act during the next step; impulses change the velocity at once. A value that is not finite is
+/// ignored, with one warning.
 pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesInternal {
     /// Applies a force in N at the centre of mass, along the world's axes.
     fn apply_force(&mut self, force: Vector) {
@@ -428,15 +429,16 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
         accumulate(self, "force", |to| &mut to.data.linear_increment, acceleration);
     }
 
-    /// Applies a force in N at a point of the world, along the world's axes. Off the centre of mass it also gives a
-    /// torque.
+    /// Applies a force in N at a point of the world, along the world's axes. Off the centre of mass it also
+    /// gives a torque.
     fn apply_force_at_point(&mut self, force: Vector, world_point: Vector) {
         let torque = self.seen().torque(force, world_point);
         self.apply_force(force);
         self.apply_torque(torque);
     }
 
-    /// Applies a force in N at the centre of mass, along the body's own axes. It turns with the body during the step.
+    /// Applies a force in N at the centre of mass, along the body's own axes. It turns with the body
+    /// during the step.
     fn apply_local_force(&mut self, force: Vector) {
         let acceleration = force * self.seen().mass.inverse();
         accumulate(self, "force", |to| &mut to.local.linear, acceleration);
@@ -450,7 +452,8 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
 
     local_torque_methods!();
 
-    /// Applies an impulse in N·s at the centre of mass, along the world's axes: it changes the velocity at once.
+    /// Applies an impulse in N·s at the centre of mass, along the world's axes: it changes the
+    /// velocity at once.
     fn apply_linear_impulse(&mut self, impulse: Vector) {
         let seen = self.seen();
         let change = seen.response().linear(impulse);
@@ -460,8 +463,8 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
         }
     }
 
-    /// Applies an impulse in N·s at a point of the world, along the world's axes. Off the centre of mass it also changes
-    /// the angular velocity.
+    /// Applies an impulse in N·s at a point of the world, along the world's axes. Off the centre of mass it
+    /// also changes the angular velocity.
     fn apply_linear_impulse_at_point(&mut self, impulse: Vector, world_point: Vector) {
         let angular = self.seen().torque(impulse, world_point);
         self.apply_linear_impulse(impulse);
@@ -490,8 +493,9 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
         accumulate(self, "acceleration", |to| &mut to.data.linear_increment, acceleration);
     }
 
-    /// Applies an acceleration in m/s² at a point of the world: as [`apply_force_at_point`](Self::apply_force_at_point)
-    /// with the force that gives the centre of mass this acceleration.
+    /// Applies an acceleration in m/s² at a point of the world: as
+    /// [`apply_force_at_point`](Self::apply_force_at_point) with the force that gives the centre of mass this
+    /// acceleration.
     fn apply_linear_acceleration_at_point(&mut self, acceleration: Vector, world_point: Vector) {
         let seen = self.seen();
         let torque = seen.torque(seen.response().force_of(acceleration), world_point);
@@ -499,8 +503,8 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
         self.apply_torque(torque);
     }
 
-    /// Applies an acceleration in m/s² along the body's own axes, whatever the mass. It turns with the body during the
-    /// step.
+    /// Applies an acceleration in m/s² along the body's own axes, whatever the mass. It turns with the body
+    /// during the step.
     fn apply_local_linear_acceleration(&mut self, acceleration: Vector) {
         accumulate(self, "acceleration", |to| &mut to.local.linear, acceleration);
     }

@@ -14,7 +14,8 @@ use crate::{
     physics_transform::{Rotation, unit_rotation},
 };
 
-/// The inverse mass of a body, and its inverse inertia in world axes. Locked axes have an infinite mass or inertia.
+/// The inverse mass of a body, and its inverse inertia in world axes. Locked axes have an infinite
+/// mass or inertia.
 pub(super) struct Response {
     inverse_mass: Scalar,
     inverse_inertia: InvInertia,

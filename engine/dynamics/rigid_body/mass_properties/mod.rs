@@ -1,16 +1,18 @@
 //! Mass properties of bodies: mass, angular inertia and centre of mass, from shapes, from the app, or both.
 //!
-//! A body's totals are [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`]. They are the sum over
+//! A body's totals are [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`]. They
+//! are the sum over
 //!
-//! - the body itself: its collider, if it has one, with values replaced by its [`Mass`], [`AngularInertia`] and
-//!   [`CenterOfMass`];
-//! - each of its colliders on other entities, at its `ColliderTransform`, with values replaced by the same components;
-//! - each descendant without a collider that has one of the three components, at its `Transform`. A descendant that is
-//!   a body, and everything below it, does not count.
+//! - the body itself: its collider, if it has one, with values replaced by its [`Mass`], [`AngularInertia`]
+//!   and [`CenterOfMass`];
+//! - each of its colliders on other entities, at its `ColliderTransform`, with values replaced by the
+//!   same components;
+//! - each descendant without a collider that has one of the three components, at its `Transform`. A
+//!   descendant that is a body, and everything below it, does not count.
 //!
-//! Sensors and disabled colliders have no mass. [`NoAutoMass`] and its siblings restrict a total to the body's own
-//! component. A mass without an inertia scales the inertia of the collider. A centre of mass moves the inertia without
-//! changing it.
+//! Sensors and disabled colliders have no mass. [`NoAutoMass`] and its siblings restrict a total to the
+//! body's own component. A mass without an inertia scales the inertia of the collider. A centre of mass moves
+//! the inertia without changing it.
 //!
 //! ```
 //! # use avian::prelude::*;

@@ -34,8 +34,9 @@ pub struct MassPropertyQueue<'w, 's> {
 }
 
 impl MassPropertyQueue<'_, '_> {
-    /// Marks the body of an entity: the entity itself, the body of a collider, or the nearest ancestor. Does nothing
-    /// without a body. The body is computed at the end of the command, and again before the next step.
+    /// Marks the body of an entity: the entity itself, the body of a collider, or the nearest ancestor.
+    /// Does nothing without a body. The body is computed at the end of the command, and again before
+    /// the next step.
     pub(crate) fn push(&mut self, entity: Entity) {
         if let Some(body) = self.mark(entity) {
             // One command each, since commands between them make links.
@@ -63,8 +64,9 @@ impl MassPropertyQueue<'_, '_> {
     }
 }
 
-/// Maximum number of parts of a body that is computed after each command. If the parts of larger bodies are added one
-/// by one, summing all of them each time would be quadratic. Larger bodies are computed before the next step only.
+/// Maximum number of parts of a body that is computed after each command. If the parts of larger bodies are
+/// added one by one, summing all of them each time would be quadratic. Larger bodies are computed before the
+/// next step only.
 const MOST_PARTS_AT_ONCE: usize = 256;
 
 /// Kept between calls, since building it takes longer than using it.
@@ -111,7 +113,8 @@ fn weigh_new(inserted: On<Insert, RigidBody>, mut helper: MassPropertyHelper) {
     helper.update_mass_properties(inserted.entity);
 }
 
-/// Marks the body of a part without a collider that leaves its parent. [`queue_changed`] detects where it arrives.
+/// Marks the body of a part without a collider that leaves its parent. [`queue_changed`] detects
+/// where it arrives.
 fn on_part_detached(
     event: On<Discard, ChildOf>,
     parts: Query<(), (WithOwnMass, Without<ColliderOf>, Without<RigidBody>)>,
@@ -122,8 +125,8 @@ fn on_part_detached(
     }
 }
 
-/// Marks the bodies of mutated components. It scans few entities: those with a mass property set by the app, and
-/// colliders with a parent.
+/// Marks the bodies of mutated components. It scans few entities: those with a mass property set by the app,
+/// and colliders with a parent.
 pub(super) fn queue_changed(
     changed: Query<
         (Entity, Option<&Mass>, Option<&AngularInertia>, Option<&CenterOfMass>, Option<&Name>),
@@ -226,8 +229,8 @@ impl ReportedMassless {
 
 /// Warns of dynamic bodies without mass, once each.
 ///
-/// Such a body falls, since gravity is an acceleration, but contacts, joints and forces do not move it. A default mass
-/// would hide the mistake.
+/// Such a body falls, since gravity is an acceleration, but contacts, joints and forces do not move it. A
+/// default mass would hide the mistake.
 pub(crate) fn warn_of_missing_mass(
     marked: Query<
         (Entity, &RigidBody, &ComputedMass, Option<&Mass>, Has<NoAutoMass>, Option<&Name>),

@@ -71,8 +71,8 @@ pub struct MassPropertyHelper<'w, 's> {
 }
 
 impl MassPropertyHelper<'_, '_> {
-    /// Computes an entity's [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`] by the rules of
-    /// the [module](super). Does nothing to an entity that lacks one of the three.
+    /// Computes an entity's [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`] by the
+    /// rules of the [module](super). Does nothing to an entity that lacks one of the three.
     ///
     /// A static body gets infinite mass and inertia.
     pub fn update_mass_properties(&mut self, entity: Entity) {
@@ -113,8 +113,8 @@ impl MassPropertyHelper<'_, '_> {
         children.map_or(0, |list| list.len()) + colliders.map_or(0, |list| list.len())
     }
 
-    /// The mass properties of an entity and its descendants, in the entity's frame. [`NoAutoMass`] and its siblings are
-    /// ignored.
+    /// The mass properties of an entity and its descendants, in the entity's frame. [`NoAutoMass`] and its
+    /// siblings are ignored.
     pub fn total_mass_properties(&self, entity: Entity) -> MassProperties {
         self.total(entity).to_properties()
     }
@@ -126,8 +126,8 @@ impl MassPropertyHelper<'_, '_> {
         Part::sum(&parts).to_properties()
     }
 
-    /// The mass properties of an entity without its descendants: of its collider, with values replaced by its own
-    /// components. `None` if it has neither.
+    /// The mass properties of an entity without its descendants: of its collider, with values replaced by its
+    /// own components. `None` if it has neither.
     pub fn local_mass_properties(&self, entity: Entity) -> Option<MassProperties> {
         self.local(entity).map(Part::to_properties)
     }

@@ -8,8 +8,8 @@ use super::eigen::{from_principal_axes, principal_axes};
 /// Principal values below this share of the largest count as zero: they are rounding errors.
 const SINGULAR: f64 = 1e-13;
 
-/// The inverse of a positive semidefinite tensor, along principal axes where it is neither zero nor infinite. Zero
-/// along the others.
+/// The inverse of a positive semidefinite tensor, along principal axes where it is neither zero nor infinite.
+/// Zero along the others.
 pub(super) fn invert(tensor: SymmetricDMat3) -> SymmetricDMat3 {
     if !tensor.is_finite() {
         return SymmetricDMat3::ZERO;

@@ -12,8 +12,8 @@ use crate::{
 
 /// One of the two bodies of a [`Constraint`](super::Constraint).
 ///
-/// Points of the body are given by their arms: the vectors from the centre of mass, in m along the world's axes.
-/// Impulses on bodies that are not dynamic have no effect.
+/// Points of the body are given by their arms: the vectors from the centre of mass, in m along the world's
+/// axes. Impulses on bodies that are not dynamic have no effect.
 #[derive(Debug)]
 pub struct ConstraintBody<'a>(pub(super) &'a mut CustomBody);
 
@@ -34,8 +34,8 @@ impl ConstraintBody<'_> {
         vector_from_kernel(self.0.turn.rotate(arm))
     }
 
-    /// The vector now from a point of the first body to one of the second, given by their arms now. Exact also far
-    /// from the origin.
+    /// The vector now from a point of the first body to one of the second, given by their arms now. Exact
+    /// also far from the origin.
     pub fn offset(bodies: &[Self; 2], arms: [Vector; 2]) -> Vector {
         let [a, b] = bodies.each_ref().map(|body| &*body.0);
         let offset = (b.center - a.center).to_local() + (b.shift - a.shift);
@@ -67,13 +67,14 @@ impl ConstraintBody<'_> {
         self.0.twist(angular_to_kernel(impulse));
     }
 
-    /// The inverse mass along each of the world's axes, in 1/kg: zero along locked ones, and for bodies that are not dynamic.
+    /// The inverse mass along each of the world's axes, in 1/kg: zero along locked ones, and for bodies that
+    /// are not dynamic.
     pub fn inverse_mass(&self) -> Vector {
         vector_from_kernel(self.0.inv_mass)
     }
 
-    /// The inverse angular inertia in 1/(kg·m²), in 3D about the world's axes: zero about locked ones, and for bodies
-    /// that are not dynamic.
+    /// The inverse angular inertia in 1/(kg·m²), in 3D about the world's axes: zero about locked ones, and
+    /// for bodies that are not dynamic.
     pub fn inverse_angular_inertia(&self) -> SymmetricTensor {
         inv_inertia_from_kernel(self.0.inv_inertia)
     }

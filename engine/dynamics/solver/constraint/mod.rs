@@ -1,10 +1,11 @@
 //! Constraints of the app that the kernel solves with contacts and joints. Beyond Avian.
 //!
-//! A [`Constraint`] is a component on an entity of its own. [`ConstraintPlugin`] makes a type of them act. In each substep it
-//! changes the velocities of two bodies, in turns with contacts and joints and by all threads. Its bodies are in one island: they
-//! sleep and wake together.
+//! A [`Constraint`] is a component on an entity of its own. [`ConstraintPlugin`] makes a type of them act. In
+//! each substep it changes the velocities of two bodies, in turns with contacts and joints and by all
+//! threads. Its bodies are in one island: they sleep and wake together.
 //!
-//! A spring that pulls its bodies towards each other, implicit in each substep, so that it is stable however stiff:
+//! A spring that pulls its bodies towards each other, implicit in each substep, so that it is stable
+//! however stiff:
 //!
 //! ```
 //! # use avian::{
@@ -79,16 +80,17 @@ use crate::{dynamics::joints::EntityConstraint, math::Scalar};
 /// A constraint between two bodies that the kernel solves; see the [module](self).
 ///
 /// It acts while both entities are bodies in the simulation, and it has no
-/// [`JointDisabled`](crate::dynamics::joints::JointDisabled). The kernel works on a copy: a change of the component takes
-/// effect in the next step, and wakes the bodies. Constraints of one type and of others are solved in a fixed order or by several
-/// threads at once, where they share no body that moves. So an implementation must not depend on any state but its own, and the
-/// same input must give the same output. Then results have the same bits for any number of threads.
+/// [`JointDisabled`](crate::dynamics::joints::JointDisabled). The kernel works on a copy: a change of the
+/// component takes effect in the next step, and wakes the bodies. Constraints of one type and of others are
+/// solved in a fixed order or by several threads at once, where they share no body that moves. So an
+/// implementation must not depend on any state but its own, and the same input must give the same output.
+/// Then results have the same bits for any number of threads.
 pub trait Constraint: Component + EntityConstraint<2> + Clone {
     /// What is computed once per step, and the impulses that are summed up in its substeps.
     type Rows: Clone + Send + Sync + 'static;
 
-    /// Prepares for a step. The bodies are where the step begins. `last` are the rows of the last step in which it acted. May be
-    /// called more than once in a step, with the same `last`.
+    /// Prepares for a step. The bodies are where the step begins. `last` are the rows of the last step in
+    /// which it acted. May be called more than once in a step, with the same `last`.
     fn prepare(
         &self,
         bodies: &[ConstraintBody; 2],
@@ -96,13 +98,15 @@ pub trait Constraint: Component + EntityConstraint<2> + Clone {
         last: Option<&Self::Rows>,
     ) -> Self::Rows;
 
-    /// At the start of a substep, applies the impulses of the last one, so that only their change is left to be solved.
+    /// At the start of a substep, applies the impulses of the last one, so that only their change is left
+    /// to be solved.
     fn warm_start(&self, _rows: &mut Self::Rows, _bodies: &mut [ConstraintBody; 2], _step: &ConstraintStep) {}
 
     /// Changes velocities so that the constraint holds.
     ///
-    /// Called twice in a substep: before positions are integrated, with `use_bias`, so that errors of positions are reduced as
-    /// well; and after, without, so that what reduced them is not left in the velocities. Springs do nothing in the second call.
+    /// Called twice in a substep: before positions are integrated, with `use_bias`, so that errors of
+    /// positions are reduced as well; and after, without, so that what reduced them is not left in the
+    /// velocities. Springs do nothing in the second call.
     fn solve(
         &self,
         rows: &mut Self::Rows,

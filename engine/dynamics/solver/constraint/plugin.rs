@@ -71,12 +71,13 @@ fn note_constraints<C: Constraint>(
             && let Some(act) = customs.act_mut(id).and_then(|act| act.as_any_mut().downcast_mut::<Act<C>>())
         {
             act.constraint = C::clone(&constraint);
-            bodies.into_iter().for_each(|body| tables.link().wake_body(body));
+            bodies.into_iter().for_each(|body| tables.contact_manager().wake_body(body));
         }
     }
 }
 
-/// Reads the rows of constraints as they were at the end of the last step in which they acted: their impulses, for example.
+/// Reads the rows of constraints as they were at the end of the last step in which they acted: their
+/// impulses, for example.
 #[derive(SystemParam)]
 pub struct ConstraintRows<'w, C: Constraint> {
     ties: Res<'w, Ties>,

@@ -1,7 +1,8 @@
 //! Which bodies constraints of the app connect: the table behind all types of them.
 //!
-//! At the start of a step each type notes the constraints that it has. What is noted and not in the kernel enters, and what is in
-//! the kernel and was not noted leaves. So a constraint may come before its bodies, and a body may leave and come back.
+//! At the start of a step each type notes the constraints that it has. What is noted and not in the kernel
+//! enters, and what is in the kernel and was not noted leaves. So a constraint may come before its bodies,
+//! and a body may leave and come back.
 
 use bevy_app::App;
 use bevy_ecs::{
@@ -85,7 +86,8 @@ pub(crate) struct Ties {
 }
 
 impl Ties {
-    /// Notes that the app has a constraint. `act` is what it does, if the kernel does not [have](Self::id) it yet.
+    /// Notes that the app has a constraint. `act` is what it does, if the kernel does not
+    /// [have](Self::id) it yet.
     pub(crate) fn want(&mut self, key: Key, ends: [Entity; 2], act: Option<Box<dyn CustomConstraint>>) {
         self.wanted.push(Wanted { key, ends, act });
     }
@@ -95,7 +97,8 @@ impl Ties {
         self.held.get(&key).map(|tied| tied.id)
     }
 
-    /// The ids of a constraint and its bodies, if it is in the kernel between the bodies that are at its ends now.
+    /// The ids of a constraint and its bodies, if it is in the kernel between the bodies that are at
+    /// its ends now.
     pub(crate) fn current(
         &self,
         key: Key,
@@ -154,13 +157,14 @@ fn settle_ties(mut ties: ResMut<Ties>, mut solver: ResMut<StepSolver>, mut table
     let id_of = |end: Entity| ids.get(end).ok().map(|id| id.0);
     let find = |key: Key| wanted.binary_search_by_key(&key, |wanted| wanted.key).ok();
     let customs = &mut solver.kernel.customs;
-    // First those that leave: a body that left has taken its constraints along, and their ids may be used again.
+    // First those that leave: a body that left has taken its constraints along, and their ids may
+    // be used again.
     ties.held.retain(|&key, tied| {
         let is_live = tables.bodies.table.constraints(ConstraintKind::Custom).is_live(tied.id);
         let is_same = |wanted: &Wanted| tied.is_current(wanted.ends, &tables.bodies.table, &ids);
         let stays = find(key).is_some_and(|place| is_same(&wanted[place]));
         if is_live && !stays {
-            let removed = customs.remove(&mut tables.link(), tied.id);
+            let removed = customs.remove(&mut tables.contact_manager(), tied.id);
             debug_assert!(removed.is_ok(), "{key:?} is in the kernel: {removed:?}");
         }
         stays
@@ -183,7 +187,7 @@ fn settle_ties(mut ties: ResMut<Ties>, mut solver: ResMut<StepSolver>, mut table
         };
         // A constraint waits for its bodies.
         if !bodies.contains(&NONE)
-            && let Ok(id) = customs.add(&mut tables.link(), bodies, act)
+            && let Ok(id) = customs.add(&mut tables.contact_manager(), bodies, act)
         {
             ties.held.insert(key, Tied { id, ends, bodies });
         }

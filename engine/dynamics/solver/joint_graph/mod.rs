@@ -18,9 +18,10 @@ use core::fmt;
 
 /// The joints between entities, each as an edge.
 ///
-/// It has the joints of all types with a [`JointGraphPlugin`] that are neither disabled nor despawned, whether or not their
-/// entities are bodies. It follows at once when a joint is spawned, inserted, removed or disabled, and at the start of the next
-/// step when its bodies were mutated. Joints of a body are in the order in which they were added, unless some were removed.
+/// It has the joints of all types with a [`JointGraphPlugin`] that are neither disabled nor despawned,
+/// whether or not their entities are bodies. It follows at once when a joint is spawned, inserted, removed or
+/// disabled, and at the start of the next step when its bodies were mutated. Joints of a body are in the
+/// order in which they were added, unless some were removed.
 ///
 /// ```
 /// # use avian::{dynamics::solver::joint_graph::JointGraph, prelude::*};
@@ -144,8 +145,8 @@ impl JointGraph {
         self.joints_of(body).map(move |edge| if edge.body1 == body { edge.body2 } else { edge.body1 })
     }
 
-    /// Adds an edge between two bodies, or replaces that of the joint's entity. The fields of the edge follow from the
-    /// arguments.
+    /// Adds an edge between two bodies, or replaces that of the joint's entity. The fields of the edge follow
+    /// from the arguments.
     pub fn add_joint(&mut self, body1: Entity, body2: Entity, joint_edge: JointGraphEdge) -> JointId {
         self.remove_joint(joint_edge.entity);
         let id = self.free.pop().unwrap_or(JointId(self.edges.len() as u32));

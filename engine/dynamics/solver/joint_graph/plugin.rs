@@ -12,11 +12,11 @@ use crate::{
     step::{self, Stage},
 };
 
-/// Keeps the joints of a type in [`JointGraph`], and sees that an entity has one joint only: the last one that was inserted
-/// stays.
+/// Keeps the joints of a type in [`JointGraph`], and sees that an entity has one joint only: the last one
+/// that was inserted stays.
 ///
-/// [`SolverPlugins`](crate::dynamics::solver::SolverPlugins) has it for all joints of the engine. Add it for a type of your own
-/// to find it in the graph.
+/// [`SolverPlugins`](crate::dynamics::solver::SolverPlugins) has it for all joints of the engine. Add it for
+/// a type of your own to find it in the graph.
 pub struct JointGraphPlugin<T: Component + EntityConstraint<2>>(PhantomData<fn() -> T>);
 
 impl<T: Component + EntityConstraint<2>> Default for JointGraphPlugin<T> {
@@ -47,7 +47,8 @@ impl<T: Component + EntityConstraint<2>> Plugin for JointGraphPlugin<T> {
             }
         });
         app.add_observer(move |on: On<Insert, Settings>, mut edges: Edges<T>| edges.refresh(on.entity, own))
-            // The component is still there, and the joint may leave with it: the edge is refreshed after both.
+            // The component is still there, and the joint may leave with it: the edge is
+            // refreshed after both.
             .add_observer(move |on: On<Remove, Settings>, mut commands: Commands| {
                 commands.run_system_cached_with(refresh::<T>, (on.entity, own));
             });

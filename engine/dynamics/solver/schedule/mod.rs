@@ -14,12 +14,14 @@ use core::time::Duration;
 use crate::schedule::{Physics, Substeps};
 
 /// One substep, run [`SubstepCount`] times per step in [`SolverSystems::Substep`], in the order
-/// [`Velocity`](crate::dynamics::integrator::IntegrationSystems::Velocity), [`WarmStart`](SubstepSolverSystems::WarmStart),
-/// [`SolveConstraints`](SubstepSolverSystems::SolveConstraints), [`Position`](crate::dynamics::integrator::IntegrationSystems::Position),
+/// [`Velocity`](crate::dynamics::integrator::IntegrationSystems::Velocity),
+/// [`WarmStart`](SubstepSolverSystems::WarmStart),
+/// [`SolveConstraints`](SubstepSolverSystems::SolveConstraints),
+/// [`Position`](crate::dynamics::integrator::IntegrationSystems::Position),
 /// [`Relax`](SubstepSolverSystems::Relax), [`Damping`](SubstepSolverSystems::Damping).
 ///
-/// While only the engine's own systems are in it, without run conditions, one call per substep runs instead, with the
-/// same result.
+/// While only the engine's own systems are in it, without run conditions, one call per substep runs instead,
+/// with the same result.
 ///
 /// Systems run one after the other, and an ambiguous order is an error. The generic [`Time`] is
 /// [`Time<Substeps>`](Substeps) in it.
@@ -73,8 +75,8 @@ pub type SubstepSolverSet = SubstepSolverSystems;
 
 /// Number of substeps per step. 6 by default. 0 counts as 1.
 ///
-/// Contacts are computed once per step, the solver runs once per substep: more substeps make stacks and joints stiffer,
-/// and cost solver time only.
+/// Contacts are computed once per step, the solver runs once per substep: more substeps make stacks and
+/// joints stiffer, and cost solver time only.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -101,8 +103,8 @@ pub(crate) fn substep_delta(step: Duration, count: SubstepCount) -> Duration {
     step / count.0.max(1)
 }
 
-/// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so that systems before the substeps know
-/// their length. Each later substep advances it.
+/// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so that systems before the substeps
+/// know their length. Each later substep advances it.
 pub(crate) fn start_substep_clock(
     mut substeps: ResMut<Time<Substeps>>,
     physics: Res<Time<Physics>>,

@@ -13,7 +13,8 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Adds [`SubstepSchedule`], [`SubstepCount`] and the order of [`SolverSystems`] and [`SubstepSolverSystems`].
+/// Adds [`SubstepSchedule`], [`SubstepCount`] and the order of [`SolverSystems`] and
+/// [`SubstepSolverSystems`].
 #[derive(Debug, Default)]
 pub struct SolverSchedulePlugin;
 

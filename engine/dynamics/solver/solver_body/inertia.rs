@@ -12,7 +12,8 @@ use crate::{
 /// The dominance of bodies that are not dynamic: above all others.
 const ABOVE_ALL: i16 = i8::MAX as i16 + 1;
 
-/// Inverse mass and inertia of a body within a step, with locked axes taken into account; see the [module](super).
+/// Inverse mass and inertia of a body within a step, with locked axes taken into account; see the
+/// [module](super).
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Debug, Default)]
 #[reflect(type_path = false)]
@@ -40,8 +41,8 @@ impl SolverBodyInertia {
         flags: InertiaFlags::STATIC,
     };
 
-    /// From inverse mass in 1/kg and inverse angular inertia in 1/(kg·m²), in 3D about the world's axes. Bodies that are not
-    /// dynamic have infinite mass and inertia, and the highest dominance.
+    /// From inverse mass in 1/kg and inverse angular inertia in 1/(kg·m²), in 3D about the world's axes.
+    /// Bodies that are not dynamic have infinite mass and inertia, and the highest dominance.
     pub fn new(
         inv_mass: Scalar,
         inv_inertia: SymmetricTensor,
@@ -77,8 +78,8 @@ impl SolverBodyInertia {
         self.inv_inertia
     }
 
-    /// The [`Dominance`](crate::dynamics::rigid_body::Dominance), or one more than the highest for bodies that are not
-    /// dynamic.
+    /// The [`Dominance`](crate::dynamics::rigid_body::Dominance), or one more than the highest for bodies
+    /// that are not dynamic.
     pub fn dominance(&self) -> i16 {
         self.dominance
     }

@@ -1,8 +1,8 @@
 //! Between the rows of bodies and their [`SolverBody`], while systems of the app ask for it.
 //!
-//! Rows hold the truth while the solver runs, components while systems of the app run. So each of the solver's systems in a
-//! substep begins with [`take_back`] and ends with [`lend_again`]. Both do nothing where the component is not known to the
-//! world: then no system of the app queries it.
+//! Rows hold the truth while the solver runs, components while systems of the app run. So each of the
+//! solver's systems in a substep begins with [`take_back`] and ends with [`lend_again`]. Both do nothing
+//! where the component is not known to the world: then no system of the app queries it.
 
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel, system::SystemState};
 use kernel::{data::BitSet, solver::BodyRow, table::NONE};
@@ -65,7 +65,8 @@ fn build_substeps(world: &mut World) {
     }
 }
 
-/// At the start of the solver: gives all bodies with a row the components, with the state of now, and takes them from others.
+/// At the start of the solver: gives all bodies with a row the components, with the state of now, and takes
+/// them from others.
 pub(crate) fn lend_bodies(world: &mut World) {
     build_substeps(world);
     if !is_asked_for(world) {
@@ -123,7 +124,8 @@ pub(crate) fn end_lending(world: &mut World) {
     });
 }
 
-/// Writes what systems of the app changed to the rows. A body whose state is not finite stops and is disabled.
+/// Writes what systems of the app changed to the rows. A body whose state is not finite stops
+/// and is disabled.
 pub(crate) fn take_back(world: &mut World) {
     if !is_asked_for(world) || !world.contains_resource::<Lending>() {
         return;

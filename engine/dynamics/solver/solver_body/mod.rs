@@ -1,11 +1,14 @@
-//! The state of bodies within a step, as components for systems of the app: [`SolverBody`] and [`SolverBodyInertia`].
+//! The state of bodies within a step, as components for systems of the app: [`SolverBody`] and
+//! [`SolverBodyInertia`].
 //!
-//! The solver keeps awake bodies in rows of the kernel. Once a system of the app queries one of these components, awake
-//! dynamic and kinematic bodies have both from [`PrepareSolverBodies`](super::schedule::SolverSystems::PrepareSolverBodies)
-//! on. They are written before and read after systems in [`SubstepSchedule`](super::schedule::SubstepSchedule) and in
+//! The solver keeps awake bodies in rows of the kernel. Once a system of the app queries one of these
+//! components, awake dynamic and kinematic bodies have both from
+//! [`PrepareSolverBodies`](super::schedule::SolverSystems::PrepareSolverBodies) on. They are written
+//! before and read after systems in [`SubstepSchedule`](super::schedule::SubstepSchedule) and in
 //! [`PreSubstep`](super::schedule::SolverSystems::PreSubstep) to
-//! [`PostSubstep`](super::schedule::SolverSystems::PostSubstep): what a system writes is what the solver continues from. In
-//! apps without such a system no body has them, and the solver does no more than without this module.
+//! [`PostSubstep`](super::schedule::SolverSystems::PostSubstep): what a system writes is what the solver
+//! continues from. In apps without such a system no body has them, and the solver does no more than
+//! without this module.
 //!
 //! ```
 //! # use avian::{dynamics::solver::{schedule::SubstepSolverSystems, solver_body::SolverBody}, math::Vector, prelude::*};
@@ -53,9 +56,10 @@ use crate::{
 ///
 /// Static and sleeping bodies have none. Computations take [`SolverBody::DUMMY`] for them, which is at rest.
 ///
-/// Poses are given as displacements since the start of the step, so that they are exact far from the origin. A change of
-/// them moves the body at the end of the step. The velocity of a kinematic body is that of its components again in the next
-/// step. A body whose values are not finite is put back, stopped and disabled with a warning.
+/// Poses are given as displacements since the start of the step, so that they are exact far from the origin.
+/// A change of them moves the body at the end of the step. The velocity of a kinematic body is that of its
+/// components again in the next step. A body whose values are not finite is put back, stopped and disabled
+/// with a warning.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Debug, Default)]
 pub struct SolverBody {

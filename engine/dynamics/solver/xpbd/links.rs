@@ -6,8 +6,8 @@ use std::sync::Mutex;
 
 use crate::dynamics::solver::constraint::ties::{FIRST_XPBD, Ties};
 
-/// The constraints that were prepared in the last step. Systems that prepare different types may run in any order, so they add to
-/// it without exclusive access.
+/// The constraints that were prepared in the last step. Systems that prepare different types may run in any
+/// order, so they add to it without exclusive access.
 #[derive(Resource, Debug, Default)]
 pub struct Links {
     wanted: Mutex<Vec<(u32, Entity, [Entity; 2])>>,

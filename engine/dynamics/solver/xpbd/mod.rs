@@ -1,11 +1,11 @@
 //! Constraints of the app by extended position-based dynamics (XPBD), with the interface of Avian 0.7.
 //!
 //! The engine's own joints are solved by its kernel. A constraint of the app can be so, too, with
-//! [`Constraint`](super::constraint::Constraint), which is faster and holds more. XPBD is for constraints that were written
-//! for Avian, and for those that are easier to say as a change of positions.
+//! [`Constraint`](super::constraint::Constraint), which is faster and holds more. XPBD is for constraints
+//! that were written for Avian, and for those that are easier to say as a change of positions.
 //!
-//! A constraint is a component with [`EntityConstraint`](crate::dynamics::joints::EntityConstraint) and [`XpbdConstraint`],
-//! beside another one that holds its [`XpbdConstraintSolverData`], and two systems:
+//! A constraint is a component with [`EntityConstraint`](crate::dynamics::joints::EntityConstraint) and
+//! [`XpbdConstraint`], beside another one that holds its [`XpbdConstraintSolverData`], and two systems:
 //!
 //! ```
 //! # use avian::{
@@ -75,9 +75,9 @@
 //! # App::new().add_plugins((bevy_transform::TransformPlugin, PhysicsPlugins::default(), plugin));
 //! ```
 //!
-//! Each substep ends with these positions, and velocities are what moved the bodies there (Müller, Macklin et al., "Detailed
-//! Rigid Body Simulation with Extended Position Based Dynamics", 2020). Two bodies that a constraint holds are in one island:
-//! they sleep and wake together.
+//! Each substep ends with these positions, and velocities are what moved the bodies there (Müller, Macklin et
+//! al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", 2020). Two bodies that a
+//! constraint holds are in one island: they sleep and wake together.
 
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
@@ -102,7 +102,8 @@ use crate::{
 };
 
 /// System sets of constraints that are solved by XPBD, in this order, between
-/// [`Relax`](super::schedule::SubstepSolverSystems::Relax) and [`Damping`](super::schedule::SubstepSolverSystems::Damping) of
+/// [`Relax`](super::schedule::SubstepSolverSystems::Relax) and
+/// [`Damping`](super::schedule::SubstepSolverSystems::Damping) of
 /// [`SubstepSchedule`](super::schedule::SubstepSchedule).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum XpbdSolverSystems {
@@ -147,8 +148,8 @@ pub trait XpbdConstraint<const ENTITY_COUNT: usize> {
         solver_data: &mut Self::SolverData,
     );
 
-    /// Changes the displacements of the bodies so that the constraint holds, in a substep of `dt` seconds. Bodies that do not
-    /// move are [`SolverBody::DUMMY`].
+    /// Changes the displacements of the bodies so that the constraint holds, in a substep of `dt` seconds.
+    /// Bodies that do not move are [`SolverBody::DUMMY`].
     fn solve(
         &mut self,
         bodies: [&mut SolverBody; ENTITY_COUNT],
@@ -171,9 +172,9 @@ pub trait XpbdConstraint<const ENTITY_COUNT: usize> {
 
 /// The change Δλ of a multiplier λ: Δλ = (−C − α̃ λ) / (Σ wᵢ |∇Cᵢ|² + α̃) with α̃ = α / dt².
 ///
-/// `c` is the error C of the constraint in m or rad, `gradients` its gradients ∇Cᵢ, `inverse_masses` the wᵢ and
-/// `compliance` the α in m/N or rad/(N·m). 0 where nothing can move: where the denominator is zero or not finite. Gradients
-/// without a mass, and masses without a gradient, are ignored.
+/// `c` is the error C of the constraint in m or rad, `gradients` its gradients ∇Cᵢ, `inverse_masses` the wᵢ
+/// and `compliance` the α in m/N or rad/(N·m). 0 where nothing can move: where the denominator is zero or not
+/// finite. Gradients without a mass, and masses without a gradient, are ignored.
 pub fn compute_lagrange_update_with_gradients(
     lagrange: Scalar,
     c: Scalar,

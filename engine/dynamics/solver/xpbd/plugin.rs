@@ -18,7 +18,8 @@ use crate::{
     step::{self, Stage},
 };
 
-/// Lets constraints of the app be solved by XPBD; see the [module](super). Without such constraints it does nothing.
+/// Lets constraints of the app be solved by XPBD; see the [module](super). Without such constraints it
+/// does nothing.
 ///
 /// The engine's joints need neither this plugin nor XPBD.
 pub struct XpbdSolverPlugin;

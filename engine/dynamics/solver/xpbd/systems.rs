@@ -27,8 +27,8 @@ type States<'w, 's> =
 /// [`SolverSystems::PrepareJoints`](crate::dynamics::solver::schedule::SolverSystems::PrepareJoints) of
 /// [`PhysicsSchedule`](crate::schedule::PhysicsSchedule).
 ///
-/// Constraints with [`JointDisabled`], and those between entities that are no bodies of the simulation, are left out. Bodies that
-/// a constraint holds are in one island from the next step on.
+/// Constraints with [`JointDisabled`], and those between entities that are no bodies of the simulation, are
+/// left out. Bodies that a constraint holds are in one island from the next step on.
 pub fn prepare_xpbd_joint<C: Component<Mutability = Mutable> + EntityConstraint<2> + XpbdConstraint<2>>(
     bodies: Query<RigidBodyQueryReadOnly, Without<RigidBodyDisabled>>,
     mut joints: Query<(Entity, &mut C, &mut C::SolverData), Without<JointDisabled>>,
@@ -56,8 +56,8 @@ pub fn prepare_xpbd_joint<C: Component<Mutability = Mutable> + EntityConstraint<
 /// [`XpbdSolverSystems::SolveUserConstraints`](super::XpbdSolverSystems::SolveUserConstraints) of
 /// [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule).
 ///
-/// They are solved one after the other. Of two bodies with different [`Dominance`](crate::dynamics::rigid_body::Dominance) only
-/// the lower one is moved.
+/// They are solved one after the other. Of two bodies with different
+/// [`Dominance`](crate::dynamics::rigid_body::Dominance) only the lower one is moved.
 pub fn solve_xpbd_joint<C: Component<Mutability = Mutable> + EntityConstraint<2> + XpbdConstraint<2>>(
     mut bodies: States,
     known: Known,

@@ -1,9 +1,10 @@
-//! The axis along which two overlapping cores are least deep, by an expanding polytope (van den Bergen, "Proximity Queries and
-//! Penetration Depth Computation on 3D Game Objects", 2001).
+//! The axis along which two overlapping cores are least deep, by an expanding polytope (van den Bergen,
+//! "Proximity Queries and Penetration Depth Computation on 3D Game Objects", 2001).
 //!
-//! A polytope within the Minkowski difference A − B grows toward the surface where its own surface is nearest to the origin.
-//! That distance is a lower bound of the depth, and the difference's support along the face's normal is an upper bound. Both
-//! meet at the least depth of all directions, however many others are the least near themselves.
+//! A polytope within the Minkowski difference A − B grows toward the surface where its own surface is nearest
+//! to the origin. That distance is a lower bound of the depth, and the difference's support along the face's
+//! normal is an upper bound. Both meet at the least depth of all directions, however many others are the
+//! least near themselves.
 
 use super::super::gjk::Core;
 use super::super::view::MatrixPose;
@@ -34,8 +35,8 @@ struct Polytope {
     size: f64,
 }
 
-/// The normal from A to B along which the cores are least deep, to within [`SAME`]. `None` if their difference is
-/// flat. Not inlined, since its stack frame is large.
+/// The normal from A to B along which the cores are least deep, to within [`SAME`]. `None` if their
+/// difference is flat. Not inlined, since its stack frame is large.
 #[inline(never)]
 pub(super) fn shallowest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> Option<Vector> {
     let support = |normal: Wide| {
@@ -123,8 +124,8 @@ impl Polytope {
         self.faces[nearest]
     }
 
-    /// Adds a corner: the faces that it sees give way to a fan from it to their outline. Returns whether there was room, and
-    /// a face to replace.
+    /// Adds a corner: the faces that it sees give way to a fan from it to their outline. Returns whether
+    /// there was room, and a face to replace.
     fn add(&mut self, corner: Wide) -> bool {
         let margin = FLAT * self.size;
         // A face that gives way adds at most three sides.

@@ -1,14 +1,15 @@
 //! Cylinders, cones and frusta against everything else.
 //!
-//! The separating axis is looked for among planes first: faces of a polyhedron, and ends of frusta. A plane whose lowest point
-//! is in the region where both parts face each other is the best axis, and its region gives up to four points. Else the axis
-//! is found by closest points (GJK). Shapes that overlap are first moved apart along the best axis so far, which is repeated
-//! until the axis stays; this takes two or three rounds where they overlap little.
+//! The separating axis is looked for among planes first: faces of a polyhedron, and ends of frusta. A plane
+//! whose lowest point is in the region where both parts face each other is the best axis, and its region
+//! gives up to four points. Else the axis is found by closest points (GJK). Shapes that overlap are first
+//! moved apart along the best axis so far, which is repeated until the axis stays; this takes two or three
+//! rounds where they overlap little.
 
 mod deep;
-mod party;
 mod patch;
 mod rim;
+mod shape_features;
 #[cfg(test)]
 mod tests;
 
@@ -23,9 +24,9 @@ use crate::tuning::contact::DEEP;
 use crate::tuning::manifold::{FACING, KEPT, MARGIN, ROUNDING};
 use crate::tuning::sweeps::ROUNDS;
 use core::cell::Cell;
-use party::Party;
 use patch::{Phase, Region};
-pub use rim::lead_rims;
+pub use rim::midstep_rims;
+use shape_features::ShapeFeatures;
 
 /// [`FeatureCache::kind`] of a plane of A; `a` is the plane, `b` the phase of its circles.
 const PLANE_A: u8 = 1;
@@ -79,7 +80,7 @@ pub(super) fn frusta(a: &Curved, b: &Curved, input: PairInput, out: &mut LocalMa
     collide(&a.with_equal_discs(), b, input, out);
 }
 
-fn collide<A: Party>(a: &A, b: &Curved, input: PairInput, out: &mut LocalManifold) {
+fn collide<A: ShapeFeatures>(a: &A, b: &Curved, input: PairInput, out: &mut LocalManifold) {
     let b = &b.with_equal_discs();
     let pair = Pair::new(a, b, input);
     if !pair.try_cached(out) {
@@ -87,7 +88,8 @@ fn collide<A: Party>(a: &A, b: &Curved, input: PairInput, out: &mut LocalManifol
     }
 }
 
-/// The contact of one face of a polyhedron, that with the given normal, and a frustum: its points over the face, if any.
+/// The contact of one face of a polyhedron, that with the given normal, and a frustum: its points over the
+/// face, if any.
 pub(super) fn collide_face(a: &View, normal: Vector, b: &Curved, input: PairInput, out: &mut LocalManifold) {
     let Some(face) = (0..a.faces.len()).find(|i| a.faces[*i].normal.dot(normal) > FACING) else { return };
     let b = &b.with_equal_discs();
@@ -116,7 +118,7 @@ pub(super) fn half_space(normal: Vector, b: &Curved, input: PairInput, out: &mut
     let known = input.cache.get();
     let phase = if known.kind == PLANE_A { known.b } else { 0 };
     let mut region = Region::new(normal, 0.0, input.prediction, b.extent(Vector::ZERO), phase);
-    region.fill_plane(&party::facing(b, down, &frame));
+    region.fill_plane(&shape_features::facing(b, down, &frame));
     input.cache.set(FeatureCache { kind: PLANE_A, a: 0, b: region.phase, separation: out.gap });
     take(&region, out);
     out.radii = [0.0, b.rolling(down)];
@@ -144,7 +146,7 @@ fn take(region: &Region, out: &mut LocalManifold) {
     keep::<false>(region.candidates.as_slice(), out);
 }
 
-impl<'a, A: Party> Pair<'a, A> {
+impl<'a, A: ShapeFeatures> Pair<'a, A> {
     fn new(a: &'a A, b: &'a Curved, input: PairInput<'a>) -> Self {
         let extents = [a.extent(), b.extent(Vector::ZERO)];
         let (smaller, larger) = (min(extents[0], extents[1]), max(extents[0], extents[1]));
@@ -308,10 +310,10 @@ impl<'a, A: Party> Pair<'a, A> {
         match found.axis {
             Axis::PlaneA(plane) => {
                 let down = -self.b_in_a.direction_in(n);
-                region.fill(&self.a.part(plane), &party::facing(self.b, down, &self.b_in_a));
+                region.fill(&self.a.part(plane), &shape_features::facing(self.b, down, &self.b_in_a));
             }
             Axis::PlaneB(end) => {
-                region.fill(&self.a.facing(n), &party::end(self.b, end, &self.b_in_a));
+                region.fill(&self.a.facing(n), &shape_features::end(self.b, end, &self.b_in_a));
             }
             Axis::Line => return false,
         }
@@ -333,8 +335,9 @@ impl<'a, A: Party> Pair<'a, A> {
         out.radii = [self.a.rolling(n), self.b.rolling(down)];
     }
 
-    /// Fills the manifold from an axis that is no plane: the points of two lines side by side, or one point. `witness` are
-    /// the nearest points, if they are known. Returns whether the points are as near as the axis says.
+    /// Fills the manifold from an axis that is no plane: the points of two lines side by side, or one
+    /// point. `witness` are the nearest points, if they are known. Returns whether the points are as near
+    /// as the axis says.
     fn build_line(&self, found: &Found, witness: Option<[Vector; 2]>, out: &mut LocalManifold) -> bool {
         let n = found.normal;
         let mut region = self.region(found, 0);
@@ -409,8 +412,8 @@ impl<'a, A: Party> Pair<'a, A> {
         Some(ends.map(|sum| sum * (1.0 / out.count as f32)))
     }
 
-    /// Whether no axis is clearly less deep, by a point of each core. If the ball of a radius about a point of B is within A,
-    /// all axes are at least as deep as that, and the other way around.
+    /// Whether no axis is clearly less deep, by a point of each core. If the ball of a radius about a point
+    /// of B is within A, all axes are at least as deep as that, and the other way around.
     fn is_best(&self, found: &Found, points: Option<[Vector; 2]>) -> bool {
         let sure = found.separation + KEPT * self.smaller;
         sure >= 0.0
@@ -420,8 +423,8 @@ impl<'a, A: Party> Pair<'a, A> {
             })
     }
 
-    /// Whether the point of one core that is farthest along an axis lies within the other core. Then they overlap, and need
-    /// not be looked at for a distance.
+    /// Whether the point of one core that is farthest along an axis lies within the other core. Then they
+    /// overlap, and need not be looked at for a distance.
     fn surely_overlaps(&self, along: &Found) -> bool {
         if !(along.separation < 0.0) {
             return false;
@@ -434,8 +437,8 @@ impl<'a, A: Party> Pair<'a, A> {
         self.a.depth_of(self.b_in_a.point(of_b)) > 0.0 || is_in_b()
     }
 
-    /// The axis that separates the cores best, and the nearest points. Where cores overlap, there may be several that are the
-    /// best near themselves.
+    /// The axis that separates the cores best, and the nearest points. Where cores overlap, there may be
+    /// several that are the best near themselves.
     fn refine_all(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
         let near = self.refine(start);
         if self.is_best(&near.0, near.1) {

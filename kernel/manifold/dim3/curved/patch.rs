@@ -1,8 +1,9 @@
 //! The contact region of two plane parts of surfaces that face each other, at least one of them round.
 //!
-//! Circles are exact: the corners of a region are corners of the one part inside the other, crossings of a side and a
-//! circle, and four points of a circle, a quarter turn apart. These have the names of what makes them. A full circle stands
-//! on four points that keep their places in the frame of the other shape, so that nothing moves while a cylinder turns.
+//! Circles are exact: the corners of a region are corners of the one part inside the other, crossings of a
+//! side and a circle, and four points of a circle, a quarter turn apart. These have the names of what makes
+//! them. A full circle stands on four points that keep their places in the frame of the other shape, so that
+//! nothing moves while a cylinder turns.
 
 use super::super::clip::clip_line;
 use super::super::reduce::{Candidates, MAX_CANDIDATES};
@@ -42,7 +43,8 @@ pub(super) struct Face<'a> {
     pub offset: f32,
 }
 
-/// Where the four points of a circle are, from step to step: 0 if it is not known, else 1 and a share of 255 of a turn.
+/// Where the four points of a circle are, from step to step: 0 if it is not known, else 1 and a share of
+/// 255 of a turn.
 pub(super) type Phase = u8;
 
 /// The names of points; a number of up to 16 bits is added.
@@ -134,8 +136,8 @@ impl Region {
         }
     }
 
-    /// The four points of a circle over a plane with a normal across it, with their numbers. One of them is at the point
-    /// nearest to the plane, or close to that. `of_a` tells that the circle is A's.
+    /// The four points of a circle over a plane with a normal across it, with their numbers. One of them is
+    /// at the point nearest to the plane, or close to that. `of_a` tells that the circle is A's.
     fn quarters(&mut self, disc: &Disc, hint: &Disc, plane: Vector, of_a: bool) -> [(u32, Vector); 4] {
         let (u, v) = disc.frame(hint.hint);
         // The distance to the plane along the normal falls this way.
@@ -253,7 +255,8 @@ impl Region {
 
     /// Two circles.
     fn discs(&mut self, a: &Disc, b: &Disc) {
-        // The points of the smaller circle, if the other one has them all, else those of both and their crossings.
+        // The points of the smaller circle, if the other one has them all, else those of both and
+        // their crossings.
         let a_first = a.radius <= b.radius;
         let first = self.circle_in_disc(a, b, a_first);
         if first == 4 {
@@ -303,8 +306,8 @@ impl Region {
         }
     }
 
-    /// Adds two lines across the normal that run side by side: the ends of the range in which they do. `false` if they do
-    /// not.
+    /// Adds two lines across the normal that run side by side: the ends of the range in which they do.
+    /// `false` if they do not.
     pub fn parallel_lines(&mut self, a: &[Vector; 2], b: &[Vector; 2]) -> bool {
         let lines = Lines::new(a[0], a[1] - a[0], *b, b[1] - b[0]);
         let Lines { u, v, uu, vv, .. } = lines;

@@ -1,10 +1,11 @@
 //! Where the rim of a rocking disc will touch.
 //!
-//! A disc that leans by a small angle α stands on one point of its rim, which runs along the rim much faster than the disc
-//! rocks: by 1/α times the angle. Solver rows keep the arms of a contact for a step, and an arm that lags behind feeds the
-//! rocking: a heap of coins rocked for ever. So the point is placed where it will be in the middle of the step.
+//! A disc that leans by a small angle α stands on one point of its rim, which runs along the rim much faster
+//! than the disc rocks: by 1/α times the angle. Solver rows keep the arms of a contact for a step, and an arm
+//! that lags behind feeds the rocking: a heap of coins rocked for ever. So the point is placed where it will
+//! be in the middle of the step.
 
-use super::party::across;
+use super::shape_features::across;
 use crate::manifold::LocalManifold;
 use crate::math::{Angular, Pose, Rot, Vector, min};
 use crate::shape::{Curved, Shape};
@@ -12,13 +13,13 @@ use crate::tuning::contact::MOST_WAY;
 use crate::tuning::manifold::{ALIKE, ROLLING};
 use crate::tuning::sweeps::LAG;
 
-/// Moves points on the lowest place of a rim, up to `near` apart, to where that will be once B has turned by `turn` against A,
-/// a rotation vector in world axes. `out` is the contact of the shapes, `rotation_a` that of A in the world, `pose_b_in_a`
-/// where B is in A's frame.
+/// Moves points on the lowest place of a rim, up to `near` apart, to where that will be once B has turned by
+/// `turn` against A, a rotation vector in world axes. `out` is the contact of the shapes, `rotation_a` that
+/// of A in the world, `pose_b_in_a` where B is in A's frame.
 ///
-/// Returns how far the surfaces may move against each other, in metres, until the points lag behind; infinity if there is no
-/// such point.
-pub fn lead_rims(
+/// Returns how far the surfaces may move against each other, in metres, until the points lag behind; infinity
+/// if there is no such point.
+pub fn midstep_rims(
     shapes: [&Shape; 2],
     rotation_a: Rot,
     pose_b_in_a: &Pose,
@@ -30,13 +31,13 @@ pub fn lead_rims(
     let mut allowed = f32::INFINITY;
     if let Shape::Curved(a) = shapes[0] {
         let rim = Rim::new(a, out.normal, -turn);
-        allowed = min(allowed, rim.lead(out, near, |point| point, |shift| shift));
+        allowed = min(allowed, rim.shift_points(out, near, |point| point, |shift| shift));
     }
     if let Shape::Curved(b) = shapes[1] {
         let rotation = pose_b_in_a.rotation;
         let rim = Rim::new(b, rotation.inverse_rotate(-out.normal), rotation.inverse_rotate(turn));
         let to_b = |point| pose_b_in_a.inverse_transform(point);
-        allowed = min(allowed, rim.lead(out, near, to_b, |shift| rotation.rotate(shift)));
+        allowed = min(allowed, rim.shift_points(out, near, to_b, |shift| rotation.rotate(shift)));
     }
     allowed
 }
@@ -70,7 +71,7 @@ impl Rim {
         Self { lowest, shift, rise: -shift.dot(down), radius, lean }
     }
 
-    fn lead(
+    fn shift_points(
         &self,
         out: &mut LocalManifold,
         near: f32,

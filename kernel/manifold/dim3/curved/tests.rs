@@ -88,14 +88,15 @@ fn extent(shape: &Shape) -> f32 {
     extent
 }
 
-/// How much deeper than the best axis the found one may be: what planes are preferred by, how sure the search is, the share
-/// of the depth at which it ends, and the rounding of positions of a metre or two.
+/// How much deeper than the best axis the found one may be: what planes are preferred by, how sure the search
+/// is, the share of the depth at which it ends, and the rounding of positions of a metre or two.
 fn allowed(a: &Shape, b: &Shape, best: f32) -> f32 {
     KEPT * extent(a).min(extent(b)) + SAME * (-best).max(0.0) + 1.0e-4
 }
 
-/// How far points may be from where the axis has them: an axis is exact, and a region ends, to within a thousandth of the
-/// smaller shape. A plane that lacks its nearest point gets one of an axis up to the preference of planes farther out.
+/// How far points may be from where the axis has them: an axis is exact, and a region ends, to within a
+/// thousandth of the smaller shape. A plane that lacks its nearest point gets one of an axis up to the
+/// preference of planes farther out.
 fn inexact(a: &Shape, b: &Shape) -> f32 {
     2.0 * MARGIN * extent(a).min(extent(b)) + 1.0e-4
 }
@@ -252,7 +253,8 @@ proptest! {
         let n = n * (1.0 / n.length());
         let [a, b] = bytes_of(n);
         let back = normal_of(FeatureCache { a, b, ..FeatureCache::NONE });
-        // Half a step of 1/127 both ways moves a point of the octahedron by √6/254, and that of the sphere by up to √3 as far.
+        // Half a step of 1/127 both ways moves a point of the octahedron by √6/254, and that of the sphere by
+        // up to √3 as far.
         prop_assert!((back - n).length() < 18.0_f32.sqrt() / 254.0 + 1e-4, "{n:?} {back:?}");
     }
 }

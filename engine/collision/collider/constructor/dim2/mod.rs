@@ -21,18 +21,21 @@ pub(super) use bevy_mesh::Mesh2d as MeshComponent;
 
 /// Makes a [`Collider`](crate::collision::collider::Collider) on the same entity, from data or from its mesh.
 ///
-/// The constructor is processed in `Update` and then removed. Its variants are the constructors of `Collider`, as data
-/// that is reflected and stored, so that editors and scene files can describe colliders. Variants whose names end in
-/// `FromMesh` need feature `collider-from-mesh` and a mesh (`Mesh2d`) on the entity, and wait until the mesh is loaded.
+/// The constructor is processed in `Update` and then removed. Its variants are the constructors of
+/// `Collider`, as data that is reflected and stored, so that editors and scene files can describe colliders.
+/// Variants whose names end in `FromMesh` need feature `collider-from-mesh` and a mesh (`Mesh2d`) on the
+/// entity, and wait until the mesh is loaded.
 ///
 /// - A collider that the entity has already is replaced.
-/// - [`ColliderConstructorReady`](super::ColliderConstructorReady) is triggered after the collider was inserted.
+/// - [`ColliderConstructorReady`](super::ColliderConstructorReady) is triggered after the collider
+///   was inserted.
 /// - A constructor that is removed before its mesh is loaded has no effect.
 /// - If the entity has no mesh, one warning names it, and the constructor waits for one.
-/// - Values that make no shape, or a mesh that cannot be loaded: one warning names the entity, and the constructor is
-///   removed. There is no event then.
+/// - Values that make no shape, or a mesh that cannot be loaded: one warning names the entity, and the
+///   constructor is removed. There is no event then.
 ///
-/// [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy) does the same for all descendants of an entity.
+/// [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy) does the same for all descendants
+/// of an entity.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};

@@ -27,8 +27,8 @@ const MAX_SUBDIVISIONS: u32 = 1024;
 /// Curved shapes are subdivided. The border of rounded shapes is left out. Triangles of solid shapes are
 /// counter-clockwise from outside.
 ///
-/// Subdivisions are at least 3 around an axis, 2 from pole to pole, and at most 1024. Zero, or a number that does not
-/// fit, changes nothing and gives a warning.
+/// Subdivisions are at least 3 around an axis, 2 from pole to pole, and at most 1024. Zero, or a number that
+/// does not fit, changes nothing and gives a warning.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -45,7 +45,8 @@ pub struct TrimeshBuilder {
     pub position: Position,
     /// The rotation of the shape in the mesh.
     pub rotation: Rotation,
-    /// Whether a compound with a part that has no surface is an error. Otherwise the part is left out. Default true.
+    /// Whether a compound with a part that has no surface is an error. Otherwise the part is left out.
+    /// Default true.
     pub fail_on_compound_error: bool,
     /// Number of subdivisions of shapes for which none is set. Default 16.
     pub fallback_subdivisions: NonZeroU32,
@@ -169,8 +170,8 @@ impl TrimeshBuilder {
     ///
     /// # Errors
     ///
-    /// [`UnsupportedShape`](TrimeshBuilderError::UnsupportedShape) for half-spaces, segments, polylines and shapes of the
-    /// app's own, which have no surface of triangles.
+    /// [`UnsupportedShape`](TrimeshBuilderError::UnsupportedShape) for half-spaces, segments, polylines and
+    /// shapes of the app's own, which have no surface of triangles.
     pub fn build(&self) -> Result<Trimesh, TrimeshBuilderError> {
         let mut mesh = self.mesh_of(&self.shape)?;
         let pose = Pose::from_parts(self.position.0, self.rotation.0);

@@ -148,8 +148,8 @@ impl Collider {
         })
     }
 
-    /// The polygon with the given corners. `None` if they are not the corners of a convex polygon in order, in either
-    /// orientation. Corners in a straight side are left out.
+    /// The polygon with the given corners. `None` if they are not the corners of a convex polygon in order,
+    /// in either orientation. Corners in a straight side are left out.
     pub fn convex_polyline(mut points: Vec<Vector>) -> Option<Self> {
         if !points.iter().all(|p| is_usable(*p)) {
             return None;
@@ -196,8 +196,8 @@ impl Collider {
         })
     }
 
-    /// A height field: heights at equal distances along the X axis, centred on the origin and `scale.x` wide in total,
-    /// times `scale.y`. At least two heights.
+    /// A height field: heights at equal distances along the X axis, centred on the origin and `scale.x` wide
+    /// in total, times `scale.y`. At least two heights.
     pub fn heightfield(heights: Vec<Scalar>, scale: Vector) -> Self {
         checked!("heightfield", |input| {
             if heights.len() < 2 {
@@ -209,8 +209,8 @@ impl Collider {
         })
     }
 
-    /// The polygon with an outline, decomposed into convex ones. An outline that crosses itself becomes its convex
-    /// hull.
+    /// The polygon with an outline, decomposed into convex ones. An outline that crosses itself becomes
+    /// its convex hull.
     pub(in super::super) fn polygon(outline: Vec<Vector>, input: &mut Input) -> Self {
         let mut outline = usable_outline(outline, input);
         let area: Scalar = corners(&outline).map(|[a, b, _]| a.perp_dot(b)).sum();

@@ -10,7 +10,8 @@ pub(in super::super) fn point([x, y, _]: [f32; 3]) -> Vector {
     Vec2::new(x, y).adjust_precision()
 }
 
-/// What bounds the inside of triangles: the sides that one triangle has alone. Vertices at the same place are one.
+/// What bounds the inside of triangles: the sides that one triangle has alone. Vertices at the same
+/// place are one.
 pub(in super::super) fn surface(
     vertices: Vec<Vector>,
     triangles: Vec<[u32; 3]>,

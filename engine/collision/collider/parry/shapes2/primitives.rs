@@ -1,8 +1,8 @@
 //! Bevy's 2D primitives as colliders.
 //!
-//! Every solid or open primitive with an exact collider has one. Arcs, sectors, circular segments, rings and annuli
-//! have none: their outlines are curved, and the app chooses how to approximate them (a `Collider::compound` of convex
-//! parts, or a `Collider::polyline`).
+//! Every solid or open primitive with an exact collider has one. Arcs, sectors, circular segments, rings and
+//! annuli have none: their outlines are curved, and the app chooses how to approximate them (a
+//! `Collider::compound` of convex parts, or a `Collider::polyline`).
 
 use super::super::Collider;
 use super::super::input::checked;
@@ -87,8 +87,8 @@ impl IntoCollider<Collider> for Rhombus {
 }
 
 impl IntoCollider<Collider> for Polygon {
-    /// The inside of the outline, decomposed into convex polygons. An outline that crosses itself gives its convex
-    /// hull.
+    /// The inside of the outline, decomposed into convex polygons. An outline that crosses itself gives
+    /// its convex hull.
     fn collider(&self) -> Collider {
         checked!("from(Polygon)", |input| Collider::polygon(adjusted(&self.vertices), &mut input))
     }

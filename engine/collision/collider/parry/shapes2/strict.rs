@@ -45,7 +45,8 @@ impl Collider {
     ///
     /// # Errors
     ///
-    /// [`InvalidSize`](Error::InvalidSize) for the sides, [`NegativeSize`](Error::NegativeSize) for the radius.
+    /// [`InvalidSize`](Error::InvalidSize) for the sides, [`NegativeSize`](Error::NegativeSize)
+    /// for the radius.
     pub fn try_round_rectangle(
         x_length: Scalar,
         y_length: Scalar,
@@ -83,8 +84,8 @@ impl Collider {
     ///
     /// # Errors
     ///
-    /// [`InvalidSize`](Error::InvalidSize), [`InvalidElement`](Error::InvalidElement), [`NoElements`](Error::NoElements),
-    /// [`TooManyVoxels`](Error::TooManyVoxels), [`Empty`](Error::Empty).
+    /// [`InvalidSize`](Error::InvalidSize), [`InvalidElement`](Error::InvalidElement),
+    /// [`NoElements`](Error::NoElements), [`TooManyVoxels`](Error::TooManyVoxels), [`Empty`](Error::Empty).
     pub fn try_voxelized_polyline(
         vertices: &[Vector],
         indices: &[[u32; 2]],

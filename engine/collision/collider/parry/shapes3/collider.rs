@@ -167,11 +167,11 @@ impl Collider {
         })
     }
 
-    /// A height field: heights on a grid over the XZ plane, centred on the origin, `scale.x` by `scale.z` in total,
-    /// times `scale.y`.
+    /// A height field: heights on a grid over the XZ plane, centred on the origin, `scale.x` by `scale.z` in
+    /// total, times `scale.y`.
     ///
-    /// `heights[i][j]` is at place i along X and j along Z. At least two in each direction. If the inner lists differ
-    /// in length, the shortest one counts.
+    /// `heights[i][j]` is at place i along X and j along Z. At least two in each direction. If the inner
+    /// lists differ in length, the shortest one counts.
     pub fn heightfield(heights: Vec<Vec<Scalar>>, scale: Vector) -> Self {
         checked!("heightfield", |input| {
             let along_z = heights.iter().map(Vec::len).min().unwrap_or(0);

@@ -84,7 +84,8 @@ fn scaled_hull(hull: &ConvexPolyhedron, scale: Vector) -> Option<ConvexPolyhedro
         .or_else(|| ConvexPolyhedron::from_convex_hull(&corners))
 }
 
-/// Columns follow x, rows follow z. A mirror of one of them exchanges the diagonals of cells; left is where x is least.
+/// Columns follow x, rows follow z. A mirror of one of them exchanges the diagonals of cells; left is
+/// where x is least.
 fn mirrored_heights(field: &HeightField, signs: Vector) -> SharedShape {
     let (heights, cells) = (field.heights(), field.cells_statuses());
     let (back_rows, back_columns) = (signs.z < 0.0, signs.x < 0.0);

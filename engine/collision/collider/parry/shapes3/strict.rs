@@ -32,7 +32,8 @@ impl Collider {
     ///
     /// # Errors
     ///
-    /// [`InvalidSize`](Error::InvalidSize) for the sides, [`NegativeSize`](Error::NegativeSize) for the radius.
+    /// [`InvalidSize`](Error::InvalidSize) for the sides, [`NegativeSize`](Error::NegativeSize)
+    /// for the radius.
     pub fn try_round_cuboid(
         x_length: Scalar,
         y_length: Scalar,
@@ -68,8 +69,8 @@ impl Collider {
     ///
     /// # Errors
     ///
-    /// [`InvalidSize`](Error::InvalidSize), [`InvalidElement`](Error::InvalidElement), [`NoElements`](Error::NoElements),
-    /// [`TooManyVoxels`](Error::TooManyVoxels), [`Empty`](Error::Empty).
+    /// [`InvalidSize`](Error::InvalidSize), [`InvalidElement`](Error::InvalidElement),
+    /// [`NoElements`](Error::NoElements), [`TooManyVoxels`](Error::TooManyVoxels), [`Empty`](Error::Empty).
     pub fn try_voxelized_trimesh(
         vertices: &[Vector],
         indices: &[[u32; 3]],
@@ -86,7 +87,8 @@ impl Collider {
     /// # Errors
     ///
     /// [`TooFewHeights`](Error::TooFewHeights), [`UnevenHeights`](Error::UnevenHeights),
-    /// [`InvalidSize`](Error::InvalidSize) for the extents, [`InvalidPoint`](Error::InvalidPoint) for a height.
+    /// [`InvalidSize`](Error::InvalidSize) for the extents, [`InvalidPoint`](Error::InvalidPoint)
+    /// for a height.
     pub fn try_heightfield(heights: Vec<Vec<Scalar>>, scale: Vector) -> Result<Self, Error> {
         if heights.len() < 2 || heights.iter().any(|line| line.len() < 2) {
             return Err(Error::TooFewHeights);

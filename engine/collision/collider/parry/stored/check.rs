@@ -39,7 +39,8 @@ pub(super) fn check_lengths<const N: usize>(lengths: [Scalar; N]) -> Result<(), 
     }
 }
 
-/// Whether the heights of a height field are finite and within the range of parry's algorithms, also times its scale.
+/// Whether the heights of a height field are finite and within the range of parry's algorithms, also
+/// times its scale.
 pub(super) fn check_heights(heights: &[Scalar], scale: Scalar) -> Result<(), Fault> {
     let usable = |v: Scalar| v.abs() <= MAX_LENGTH;
     if heights.iter().all(|h| usable(*h) && usable(*h * scale)) {

@@ -1,8 +1,8 @@
 //! Serialization of a [`Collider`]: the definition of its shape, its scale, and its number of subdivisions.
 //!
-//! Trees of boxes, topology and all other derived data are computed again, to the same bits. Only parry's tree over
-//! voxels depends on the order of a hash map, as it does without serialization. A definition that makes no shape is an
-//! error of the deserializer.
+//! Trees of boxes, topology and all other derived data are computed again, to the same bits. Only parry's
+//! tree over voxels depends on the order of a hash map, as it does without serialization. A definition that
+//! makes no shape is an error of the deserializer.
 
 mod check;
 #[cfg_attr(feature = "2d", path = "dim2.rs")]

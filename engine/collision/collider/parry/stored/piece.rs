@@ -1,5 +1,6 @@
-//! Values that parry's convex hulls are deserialized from. Their fields are private, and their constructors recompute
-//! some of them from other data, so deserializing checked values is the only way to restore all bits.
+//! Values that parry's convex hulls are deserialized from. Their fields are private, and their
+//! constructors recompute some of them from other data, so deserializing checked values is the only way to
+//! restore all bits.
 
 use serde::{
     Deserialize, Deserializer,

@@ -9,7 +9,8 @@ use derive_more::From;
 
 use crate::math::{ComputeMassProperties, MassProperties};
 
-/// The density of a collider's material, in kg/m³ (in 2D kg/m²). 1 by default. With 0 the collider has no mass.
+/// The density of a collider's material, in kg/m³ (in 2D kg/m²). 1 by default. With 0 the
+/// collider has no mass.
 #[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -30,8 +31,8 @@ impl ColliderDensity {
     pub const ZERO: Self = Self(0.0);
 }
 
-/// The mass properties of a collider with its [`ColliderDensity`], in the collider's frame. Computed from the shape:
-/// writing it has no lasting effect. To set a mass, insert a [`Mass`](super::Mass).
+/// The mass properties of a collider with its [`ColliderDensity`], in the collider's frame. Computed from the
+/// shape: writing it has no lasting effect. To set a mass, insert a [`Mass`](super::Mass).
 ///
 /// Sensors and disabled colliders have it as well, but it does not count for their body.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, PartialEq, From)]

@@ -10,10 +10,12 @@ use derive_more::From;
 use super::{CenterOfMass, Mass, MassError};
 use crate::math::{AdjustPrecision, RecipOrZero, Scalar, Vector};
 
-/// The total mass of a body, in kg. Stored as its inverse, so that infinite mass is 0. A mass of 0 means infinite, too.
+/// The total mass of a body, in kg. Stored as its inverse, so that infinite mass is 0. A mass of 0 means
+/// infinite, too.
 ///
-/// Computed from [`Mass`] and the colliders. Static bodies have infinite mass. Kinematic bodies have the mass they
-/// would have as dynamic ones, without effect on contacts. Write it only with [`NoAutoMass`](super::NoAutoMass).
+/// Computed from [`Mass`] and the colliders. Static bodies have infinite mass. Kinematic bodies have the mass
+/// they would have as dynamic ones, without effect on contacts. Write it only with
+/// [`NoAutoMass`](super::NoAutoMass).
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -29,8 +31,8 @@ impl ComputedMass {
     /// Immovable.
     pub const INFINITY: Self = Self { inverse: 0.0 };
 
-    /// A mass in kg; 0 means infinite. Negative values and NaN panic in debug builds and give infinite mass in release
-    /// builds.
+    /// A mass in kg; 0 means infinite. Negative values and NaN panic in debug builds and give infinite mass
+    /// in release builds.
     pub fn new(mass: Scalar) -> Self {
         let result = Self::try_new(mass);
         debug_assert!(result.is_ok(), "a mass is not negative and not NaN, this is {mass}");
@@ -42,8 +44,8 @@ impl ComputedMass {
         check(mass).map(|()| Self { inverse: mass.recip_or_zero() })
     }
 
-    /// A mass from its inverse in 1/kg. Negative values and NaN panic in debug builds and give infinite mass in release
-    /// builds.
+    /// A mass from its inverse in 1/kg. Negative values and NaN panic in debug builds and give infinite mass
+    /// in release builds.
     pub fn from_inverse(inverse_mass: Scalar) -> Self {
         let result = Self::try_from_inverse(inverse_mass);
         debug_assert!(result.is_ok(), "an inverse mass is not negative and not NaN, this is {inverse_mass}");

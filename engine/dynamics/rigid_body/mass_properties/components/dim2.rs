@@ -11,13 +11,13 @@ use derive_more::From;
 use super::{AngularInertiaError, CenterOfMass, ComputedCenterOfMass};
 use crate::math::{AdjustPrecision, ComputeMassProperties, MassProperties, RecipOrZero, Scalar, Vector};
 
-/// The angular inertia of one entity about its centre of mass, in kg·m²: of a body, or of a part of a body on a
-/// descendant.
+/// The angular inertia of one entity about its centre of mass, in kg·m²: of a body, or of a part of a body on
+/// a descendant.
 ///
-/// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`], is the sum
-/// over the body and its descendants about the common centre of mass, or only this with
-/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia). Infinity is allowed. Negative values and NaN count as 0, with
-/// a warning.
+/// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`],
+/// is the sum over the body and its descendants about the common centre of mass, or only this with
+/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia). Infinity is allowed. Negative values and NaN count
+/// as 0, with a warning.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -51,11 +51,11 @@ impl AngularInertia {
     }
 }
 
-/// The total angular inertia of a body about its centre of mass, in kg·m². Stored as its inverse, so that infinite
-/// inertia is 0. An inertia of 0 means infinite, too.
+/// The total angular inertia of a body about its centre of mass, in kg·m². Stored as its inverse, so that
+/// infinite inertia is 0. An inertia of 0 means infinite, too.
 ///
-/// Computed from [`AngularInertia`] and the colliders. Static bodies have infinite inertia. Write it only with
-/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
+/// Computed from [`AngularInertia`] and the colliders. Static bodies have infinite inertia. Write it only
+/// with [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -83,8 +83,8 @@ impl ComputedAngularInertia {
     /// Cannot be rotated.
     pub const INFINITY: Self = Self { inverse: 0.0 };
 
-    /// An inertia in kg·m²; 0 means infinite. Negative values and NaN panic in debug builds and give infinite inertia
-    /// in release builds.
+    /// An inertia in kg·m²; 0 means infinite. Negative values and NaN panic in debug builds and give infinite
+    /// inertia in release builds.
     pub fn new(angular_inertia: Scalar) -> Self {
         let result = Self::try_new(angular_inertia);
         debug_assert!(result.is_ok(), "an inertia is not negative and not NaN, this is {angular_inertia}");
@@ -96,8 +96,8 @@ impl ComputedAngularInertia {
         check(angular_inertia).map(|()| Self { inverse: angular_inertia.recip_or_zero() })
     }
 
-    /// An inertia from its inverse in 1/(kg·m²). Negative values and NaN panic in debug builds and give infinite
-    /// inertia in release builds.
+    /// An inertia from its inverse in 1/(kg·m²). Negative values and NaN panic in debug builds and give
+    /// infinite inertia in release builds.
     pub fn from_inverse(inverse_angular_inertia: Scalar) -> Self {
         let result = Self::try_from_inverse(inverse_angular_inertia);
         debug_assert!(result.is_ok(), "an inverse inertia is not negative and not NaN");
@@ -129,8 +129,8 @@ impl ComputedAngularInertia {
         *self = angular_inertia.into();
     }
 
-    /// The inertia of a body of `mass` kg about an axis at `offset` metres from its centre of mass, by the parallel
-    /// axis theorem: I + m d². 0, which means infinite, if the inertia is infinite.
+    /// The inertia of a body of `mass` kg about an axis at `offset` metres from its centre of mass, by the
+    /// parallel axis theorem: I + m d². 0, which means infinite, if the inertia is infinite.
     pub fn shifted(&self, mass: Scalar, offset: Vector) -> Scalar {
         if self.is_infinite() { 0.0 } else { self.value() + mass * offset.length_squared() }
     }

@@ -1,4 +1,5 @@
-//! Angular inertia in 3D: a symmetric tensor, or principal values with their axes. `dim2.rs` has the number of 2D.
+//! Angular inertia in 3D: a symmetric tensor, or principal values with their axes. `dim2.rs` has the
+//! number of 2D.
 
 use bevy_ecs::prelude::*;
 use bevy_heavy::AngularInertiaTensor;
@@ -18,13 +19,13 @@ use crate::math::{
     SymmetricMatrix, SymmetricMatrix3, Vector,
 };
 
-/// The angular inertia of one entity about its centre of mass, in kg·m², as principal values with their axes: of a
-/// body, or of a part of a body on a descendant.
+/// The angular inertia of one entity about its centre of mass, in kg·m², as principal values with their axes:
+/// of a body, or of a part of a body on a descendant.
 ///
-/// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`], is the sum
-/// over the body and its descendants about the common centre of mass, or only this with
-/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia). Infinity is allowed. Negative values and NaN count as 0, with
-/// a warning.
+/// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`],
+/// is the sum over the body and its descendants about the common centre of mass, or only this with
+/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia). Infinity is allowed. Negative values and NaN count
+/// as 0, with a warning.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -72,12 +73,14 @@ impl AngularInertia {
             .map(|()| Self { principal: principal_angular_inertia, local_frame })
     }
 
-    /// An inertia from its tensor, whose principal axes are computed. Values that rounding makes negative become zero.
+    /// An inertia from its tensor, whose principal axes are computed. Values that rounding makes
+    /// negative become zero.
     pub fn from_tensor(tensor: impl Into<AngularInertiaTensor>) -> Self {
         Self::from_symmetric_mat3(tensor.into().as_symmetric_mat3())
     }
 
-    /// An inertia from its tensor, whose principal axes are computed. Values that rounding makes negative become zero.
+    /// An inertia from its tensor, whose principal axes are computed. Values that rounding makes
+    /// negative become zero.
     pub fn from_symmetric_mat3(mat: SymmetricMat3) -> Self {
         let (principal, axes) = principal_axes(mat.as_symmetric_dmat3());
         Self {
@@ -148,11 +151,11 @@ impl From<AngularInertia> for AngularInertiaTensor {
     }
 }
 
-/// The total angular inertia of a body about its centre of mass, in its own frame, in kg·m². Stored as the inverse of
-/// the tensor, so that infinite inertia about an axis is 0. An inertia of 0 means infinite, too.
+/// The total angular inertia of a body about its centre of mass, in its own frame, in kg·m². Stored as the
+/// inverse of the tensor, so that infinite inertia about an axis is 0. An inertia of 0 means infinite, too.
 ///
-/// Computed from [`AngularInertia`] and the colliders. Static bodies have infinite inertia. Write it only with
-/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
+/// Computed from [`AngularInertia`] and the colliders. Static bodies have infinite inertia. Write it only
+/// with [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -180,8 +183,8 @@ impl ComputedAngularInertia {
     /// Cannot be rotated.
     pub const INFINITY: Self = Self { inverse: SymmetricMatrix::ZERO };
 
-    /// An inertia whose principal axes are the body's own, in kg·m²; 0 about an axis means infinite. Negative values
-    /// and NaN panic in debug builds and give infinite inertia in release builds.
+    /// An inertia whose principal axes are the body's own, in kg·m²; 0 about an axis means infinite. Negative
+    /// values and NaN panic in debug builds and give infinite inertia in release builds.
     pub fn new(principal_angular_inertia: Vector) -> Self {
         Self::new_with_local_frame(principal_angular_inertia, Quaternion::IDENTITY)
     }
@@ -192,8 +195,8 @@ impl ComputedAngularInertia {
         Self::try_new_with_local_frame(principal_angular_inertia, Quaternion::IDENTITY)
     }
 
-    /// An inertia with principal axes `orientation`, in kg·m²; 0 about an axis means infinite. Negative values and NaN
-    /// panic in debug builds and give infinite inertia in release builds.
+    /// An inertia with principal axes `orientation`, in kg·m²; 0 about an axis means infinite. Negative
+    /// values and NaN panic in debug builds and give infinite inertia in release builds.
     pub fn new_with_local_frame(principal_angular_inertia: Vector, orientation: Quaternion) -> Self {
         let result = Self::try_new_with_local_frame(principal_angular_inertia, orientation);
         debug_assert!(
@@ -203,8 +206,8 @@ impl ComputedAngularInertia {
         result.unwrap_or(Self::INFINITY)
     }
 
-    /// An inertia with principal axes `orientation`, in kg·m²; 0 about an axis means infinite. Negative values
-    /// and NaN are errors.
+    /// An inertia with principal axes `orientation`, in kg·m²; 0 about an axis means infinite. Negative
+    /// values and NaN are errors.
     pub fn try_new_with_local_frame(
         principal_angular_inertia: Vector,
         orientation: Quaternion,
@@ -214,8 +217,8 @@ impl ComputedAngularInertia {
         Ok(Self { inverse }.rotated(orientation))
     }
 
-    /// An inertia from its tensor in the body's frame, in kg·m². The body cannot be rotated about axes where it is
-    /// zero.
+    /// An inertia from its tensor in the body's frame, in kg·m². The body cannot be rotated about axes
+    /// where it is zero.
     pub fn from_tensor(tensor: SymmetricMatrix) -> Self {
         Self { inverse: invert(widen(tensor)).adjust_precision() }
     }
@@ -275,8 +278,8 @@ impl ComputedAngularInertia {
         Self { inverse: rotated(widen(self.inverse), rotation).adjust_precision() }
     }
 
-    /// The tensor of a body of `mass` kg about a point at `offset` metres from its centre of mass, by the parallel axis
-    /// theorem: I + m (|d|² 1 − d dᵀ). An infinite inertia counts as 0.
+    /// The tensor of a body of `mass` kg about a point at `offset` metres from its centre of mass, by the
+    /// parallel axis theorem: I + m (|d|² 1 − d dᵀ). An infinite inertia counts as 0.
     pub fn shifted_tensor(&self, mass: Scalar, offset: Vector) -> SymmetricMatrix3 {
         self.shifted(mass, offset).adjust_precision()
     }

@@ -45,9 +45,10 @@ pub enum AngularInertiaError {
 
 /// The mass of one entity, in kg: of a body, or of a part of a body on a descendant.
 ///
-/// It replaces the mass of the collider on the same entity. Without an [`AngularInertia`] the collider's inertia is
-/// scaled in proportion. The body's total, [`ComputedMass`], is the sum over the body and its descendants, or only this
-/// with [`NoAutoMass`]. Infinity is allowed. Negative values and NaN count as 0, with a warning.
+/// It replaces the mass of the collider on the same entity. Without an [`AngularInertia`] the collider's
+/// inertia is scaled in proportion. The body's total, [`ComputedMass`], is the sum over the body and its
+/// descendants, or only this with [`NoAutoMass`]. Infinity is allowed. Negative values and NaN count as 0,
+/// with a warning.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -78,10 +79,11 @@ impl Mass {
     }
 }
 
-/// The centre of mass of one entity, in its own frame, in metres: of a body, or of a part of a body on a descendant.
+/// The centre of mass of one entity, in its own frame, in metres: of a body, or of a part of a body on
+/// a descendant.
 ///
-/// It replaces the centre of the collider on the same entity. The body's total, [`ComputedCenterOfMass`], is the mean
-/// over the body and its descendants, weighted by mass, or only this with [`NoAutoCenterOfMass`].
+/// It replaces the centre of the collider on the same entity. The body's total, [`ComputedCenterOfMass`], is
+/// the mean over the body and its descendants, weighted by mass, or only this with [`NoAutoCenterOfMass`].
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -101,8 +103,8 @@ impl CenterOfMass {
     }
 }
 
-/// Makes a body's total mass its own [`Mass`] only, without colliders and descendants. Without a `Mass` the app sets
-/// [`ComputedMass`] itself.
+/// Makes a body's total mass its own [`Mass`] only, without colliders and descendants. Without a `Mass` the
+/// app sets [`ComputedMass`] itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[require(RecomputeMassProperties)]
@@ -114,8 +116,8 @@ impl CenterOfMass {
 )]
 pub struct NoAutoMass;
 
-/// Makes a body's total angular inertia its own [`AngularInertia`] only, without colliders and descendants. Without an
-/// `AngularInertia` the app sets [`ComputedAngularInertia`] itself.
+/// Makes a body's total angular inertia its own [`AngularInertia`] only, without colliders and descendants.
+/// Without an `AngularInertia` the app sets [`ComputedAngularInertia`] itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[require(RecomputeMassProperties)]
@@ -142,8 +144,8 @@ pub struct NoAutoCenterOfMass;
 
 /// Marks a body whose mass properties are computed again before the next step, which removes the marker.
 ///
-/// The engine inserts it when it detects a change. See [`MassPropertyPlugin`](super::MassPropertyPlugin) for changes
-/// that it does not detect.
+/// The engine inserts it when it detects a change. See [`MassPropertyPlugin`](super::MassPropertyPlugin) for
+/// changes that it does not detect.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -15,8 +15,8 @@ use crate::{
     math::{AdjustPrecision, MassProperties},
 };
 
-/// Ratio of an infinite principal value, as it is represented, to the largest finite one. With more, the finite ones
-/// are lost in rounding when the frame is rotated.
+/// Ratio of an infinite principal value, as it is represented, to the largest finite one. With more, the
+/// finite ones are lost in rounding when the frame is rotated.
 const INFINITE_RATIO: f64 = 1e9;
 /// An angular inertia tensor in kg·m².
 #[derive(Clone, Copy, Debug)]

@@ -35,8 +35,8 @@ pub trait AngularConstraint {
         impulse
     }
 
-    /// Turns the bodies so that `angle`, that of the first relative to the second in rad, vanishes. Returns the change of the
-    /// multiplier.
+    /// Turns the bodies so that `angle`, that of the first relative to the second in rad, vanishes. Returns
+    /// the change of the multiplier.
     #[expect(clippy::too_many_arguments, reason = "the interface is Avian's")]
     fn align_orientation(
         &self,

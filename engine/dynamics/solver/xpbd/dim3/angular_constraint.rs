@@ -37,8 +37,8 @@ pub trait AngularConstraint {
         impulse
     }
 
-    /// Turns the bodies so that `rotation_difference`, the rotation vector of the first relative to the second in rad, vanishes.
-    /// Returns the change of the multiplier, along its axis.
+    /// Turns the bodies so that `rotation_difference`, the rotation vector of the first relative to the
+    /// second in rad, vanishes. Returns the change of the multiplier, along its axis.
     #[expect(clippy::too_many_arguments, reason = "the interface is Avian's")]
     fn align_orientation(
         &self,

@@ -156,7 +156,7 @@ unsafe fn finish(
             for k in 0..group.len() {
                 let k = if is_backward { group.len() - 1 - k } else { k };
                 // SAFETY: by the contract.
-                progress.note(unsafe { group[k].rub(rows) });
+                progress.note(unsafe { group[k].solve_coulomb(rows) });
             }
             progress.end_sweep(most_sweeps);
         }

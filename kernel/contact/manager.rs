@@ -1,7 +1,8 @@
-//! The one door through which contacts and other constraints come and go, and colours, islands and sleep change.
+//! The contact manager: it alone creates and destroys contacts and other constraints, and changes colours,
+//! islands and sleep.
 //!
-//! Rules it keeps: a contact is active while one of its bodies is awake; a constraint has a colour while it is
-//! solved and one of its dynamic bodies is awake; two dynamic bodies it is solved between are in one
+//! Rules it keeps: a contact is active while one of its bodies is awake; a constraint has a colour while it
+//! is solved and one of its dynamic bodies is awake; two dynamic bodies it is solved between are in one
 //! island; the bodies of an island are awake or asleep together.
 
 use super::record::{Contact, ContactFlags};
@@ -22,7 +23,7 @@ pub enum Status {
 }
 
 /// All that a change of contacts and other constraints touches.
-pub struct Link<'a> {
+pub struct ContactManager<'a> {
     /// The bodies.
     pub bodies: &'a mut BodyTable,
     /// The colliders.
@@ -35,7 +36,7 @@ pub struct Link<'a> {
     pub islands: Option<&'a mut Islands>,
 }
 
-impl Link<'_> {
+impl ContactManager<'_> {
     /// Adds the contact of a pair that has none. Its colliders must be live and of different bodies.
     pub fn create(&mut self, a: u32, b: u32) -> u32 {
         self.create_with(a, b, ContactFlags::default())
@@ -53,8 +54,9 @@ impl Link<'_> {
         id
     }
 
-    /// Acts on what the narrow phase found, in the order of ids, and restarts the sleep timers of islands that were
-    /// woken: to be called in every step, before bodies are finished. `report` hears of each change.
+    /// Acts on what the narrow phase found, in the order of ids, and restarts the sleep timers of
+    /// islands that were woken: to be called in every step, before bodies are finished. `report` hears
+    /// of each change.
     pub fn apply(&mut self, changed: &BitSet, mut report: impl FnMut(u32, &Contact, Status)) {
         for id in changed.iter() {
             if !self.contacts.is_live(id) {
@@ -90,8 +92,8 @@ impl Link<'_> {
         }
     }
 
-    /// Has the next narrow phase update those contacts of a collider that push nothing, although both bodies are at rest:
-    /// after the collider was moved, or added. Others wait until a body wakes.
+    /// Has the next narrow phase update those contacts of a collider that push nothing, although both bodies
+    /// are at rest: after the collider was moved, or added. Others wait until a body wakes.
     pub fn visit_of_collider(&mut self, collider: u32) {
         for id in self.contacts_of_collider(collider) {
             self.visit(id);
@@ -140,8 +142,8 @@ impl Link<'_> {
         self.bodies.remove(body);
     }
 
-    /// Changes what moves a body. Its contacts and other constraints stay, in new colours and islands; it wakes, and so
-    /// does what it touches or is held by.
+    /// Changes what moves a body. Its contacts and other constraints stay, in new colours and islands; it
+    /// wakes, and so does what it touches or is held by.
     pub fn retype(&mut self, body: u32, kind: BodyKind) {
         let old = self.bodies[body].kind;
         if old == kind {
@@ -167,8 +169,9 @@ impl Link<'_> {
         }
     }
 
-    /// Re-reads what its colliders say of a contact after one of them was redefined in place. Its manifold is
-    /// computed anew; its colour and island change only if it responds now and did not before, or the reverse.
+    /// Re-reads what its colliders say of a contact after one of them was redefined in place. Its
+    /// manifold is computed anew; its colour and island change only if it responds now and did not
+    /// before, or the reverse.
     pub fn reflag_of_collider(&mut self, collider: u32) {
         for id in self.contacts_of_collider(collider) {
             let flags = self.fresh_flags(id);
@@ -224,8 +227,8 @@ impl Link<'_> {
         }
     }
 
-    /// The sleeping body of a contact whose other body does not move either, because it is static or a kinematic one at rest.
-    /// The narrow phase skips such a contact until the sleeping body wakes.
+    /// The sleeping body of a contact whose other body does not move either, because it is static or a
+    /// kinematic one at rest. The narrow phase skips such a contact until the sleeping body wakes.
     pub fn unseen_sleeper(&self, id: u32) -> Option<u32> {
         let contact = self.contacts.get(id);
         if contact.is_inert() || contact.bodies.iter().any(|b| self.is_awake(*b)) {
@@ -237,8 +240,8 @@ impl Link<'_> {
         }
     }
 
-    /// Wakes what a body touches or is held by, as after it was moved by hand; and what it is near, where the contact is
-    /// [unseen](Self::unseen_sleeper).
+    /// Wakes what a body touches or is held by, as after it was moved by hand; and what it is near, where the
+    /// contact is [unseen](Self::unseen_sleeper).
     pub fn wake_touching(&mut self, body: u32) {
         for id in self.contacts_of_body(body) {
             if let Some(sleeper) = self.unseen_sleeper(id).filter(|sleeper| *sleeper != body) {

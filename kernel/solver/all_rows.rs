@@ -1,12 +1,12 @@
 //! All rows of a step: the list of constraint kinds, and the sorting of constraints into batches.
 
 use super::batch::Batch;
+use super::color_layer::{ColorLayer, Sorter};
 use super::contact_batch::{CONTACT_BATCHES, ContactRows, ContactView, Room, sort_contacts};
 use super::custom::{self, CUSTOM_BATCHES, CustomRows, CustomTable, CustomView, customs, sort_customs};
 use super::joint::{
     JOINT_BATCHES, JointRows, JointTable, JointTrees, JointViews, Records, joints, sort_joints,
 };
-use super::layer::{Layer, Sorter};
 use super::plan::{Plan, Planned};
 use crate::graph::{COLOR_COUNT, ColorGraph, OVERFLOW};
 #[cfg(target_arch = "x86_64")]
@@ -59,15 +59,15 @@ pub(super) struct SortedTables<'a> {
 
 /// The layers of each colour. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Layers {
-    colors: Vec<Vec<Layer>>,
+pub(super) struct ColorLayers {
+    colors: Vec<Vec<ColorLayer>>,
     /// Number of layers in use, by colour.
     used: Vec<usize>,
 }
 
-impl Layers {
+impl ColorLayers {
     /// The layers of each colour. The last ones may be unused.
-    pub(super) fn colors(&self) -> &[Vec<Layer>] {
+    pub(super) fn colors(&self) -> &[Vec<ColorLayer>] {
         &self.colors
     }
 
@@ -104,23 +104,23 @@ impl Layers {
             let width = F32x4::WIDTH as u32;
             plan.add(
                 &Planned { number: 1, layer: shared, first_batch: SHARED, width, ..planned },
-                sorter.shares,
+                sorter.partition,
             );
         }
         for color in 0..OVERFLOW {
             let used = self.used[usize::from(color)];
             for (layer, number) in self.colors[usize::from(color)][..used].iter().zip(0..) {
                 let planned = Planned { color, number, layer, first_batch: WIDE, width: lanes };
-                plan.add(&planned, sorter.shares);
+                plan.add(&planned, sorter.partition);
             }
         }
     }
 }
 
 /// The layer with a number. It is created if it is the next one.
-fn layer(layers: &mut Vec<Layer>, number: usize) -> &mut Layer {
+fn layer(layers: &mut Vec<ColorLayer>, number: usize) -> &mut ColorLayer {
     if number == layers.len() {
-        layers.push(Layer::default());
+        layers.push(ColorLayer::default());
     }
     &mut layers[number]
 }
@@ -130,13 +130,13 @@ fn sort_color(
     (colors, color): (&ColorGraph, u8),
     tables: SortedTables,
     sorter: &Sorter,
-    layers: &mut Vec<Layer>,
+    layers: &mut Vec<ColorLayer>,
 ) -> usize {
     let (contacts, joints, customs) = (colors.contacts(color), joints(colors, color), customs(colors, color));
     let (mut left, mut number) = (contacts.len() + joints.len() + customs.len(), 0);
     while left > 0 {
         let layer = layer(layers, number);
-        layer.begin(BATCHES, sorter.shares.parts(left));
+        layer.begin(BATCHES, sorter.partition.parts(left));
         left = sort_contacts(contacts, number as u32, sorter, layer);
         if number == 0 {
             sort_joints(joints, JOINT, tables.joints, sorter, layer);
@@ -161,13 +161,13 @@ fn sort_overflow(
     colors: &ColorGraph,
     tables: SortedTables,
     sorter: &Sorter,
-    layers: &mut Vec<Layer>,
+    layers: &mut Vec<ColorLayer>,
 ) -> usize {
     let (joints, customs) = (joints(colors, OVERFLOW), customs(colors, OVERFLOW));
     if colors.overflow().is_empty() && joints.is_empty() && customs.is_empty() {
         return 0;
     }
-    layers.resize_with(layers.len().max(2), Layer::default);
+    layers.resize_with(layers.len().max(2), ColorLayer::default);
     let [singles, shared, ..] = &mut layers[..] else { return 0 };
     singles.begin_ordered(BATCHES);
     shared.begin(CONTACT_BATCHES, 1);

@@ -17,7 +17,7 @@ const SAMPLE: usize = 16;
 /// Otherwise another core would often have written it last, and loading it would take longer than solving
 /// the constraint. Results do not depend on the division.
 #[derive(Clone, Debug)]
-pub(super) struct Shares {
+pub(super) struct Partition {
     workers: usize,
     /// Minimum number of constraints per worker for which workers share a stage.
     pub(super) worth: usize,
@@ -26,13 +26,13 @@ pub(super) struct Shares {
     bounds: Vec<u32>,
 }
 
-impl Default for Shares {
+impl Default for Partition {
     fn default() -> Self {
         Self { workers: 1, worth: WORTH_SHARING, first_dynamic: 0, bounds: Vec::new() }
     }
 }
 
-impl Shares {
+impl Partition {
     /// Divides the rows of dynamic bodies so that workers get about the same number of constraints.
     pub(super) fn divide(
         &mut self,

@@ -1,9 +1,9 @@
 //! Rows of joints in batches: one batch per size of block and number of single coordinates.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
-use super::super::batch::{Batch, Filling, Pass, Passes, Sweep};
+use super::super::batch::{Batch, Filling, SolverPass, SolverPasses, Sweep};
+use super::super::color_layer::{ColorLayer, Sorter};
 use super::super::input::Item;
-use super::super::layer::{Layer, Sorter};
 use super::super::{BodyRow, MassRow, RowView, SubstepParams};
 use super::class::{CLASSES, COUPLINGS, Class};
 use super::coupling_row::{CouplingRow, CouplingView};
@@ -39,7 +39,7 @@ pub(in super::super) fn sort_joints(
     first: usize,
     (table, trees): (&JointTable, &JointTrees),
     sorter: &Sorter,
-    layer: &mut Layer,
+    layer: &mut ColorLayer,
 ) {
     let parts = layer.parts();
     for &id in joints.iter().filter(|id| !trees.holds(**id)) {
@@ -179,7 +179,7 @@ impl<'a, N: Entry> JointView<'a, N> {
 }
 
 impl<N: Entry> Batch for JointView<'_, N> {
-    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes {
+    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> SolverPasses {
         // SAFETY: by the contract.
         let mut taken = unsafe { self.take(rows) };
         taken.rows.fill(Row::default());
@@ -197,10 +197,10 @@ impl<N: Entry> Batch for JointView<'_, N> {
         }
         // SAFETY: the job has no further condition.
         unsafe { N::enter(self.proof, FinishJob { rows: taken.rows, masses: from.masses }) };
-        Passes::BASIC
+        SolverPasses::BASIC
     }
 
-    unsafe fn run(&self, rows: Range<usize>, _: Passes, sweep: &Sweep) {
+    unsafe fn run(&self, rows: Range<usize>, _: SolverPasses, sweep: &Sweep) {
         // SAFETY: by the contract.
         unsafe {
             let Sweep { bodies, params, pass, .. } = *sweep;
@@ -243,7 +243,7 @@ struct RunJob<'a, N: Lane> {
     taken: Taken<'a, N>,
     bodies: RowView<'a, BodyRow>,
     params: &'a SubstepParams,
-    pass: Pass,
+    pass: SolverPass,
 }
 
 impl<N: Lane> Job for RunJob<'_, N> {

@@ -26,7 +26,7 @@ use crate::tuning::solver::{FULL_SAG, HEAVY, MAX_DOUBLINGS, PRESSED, STEPS_TO_HA
 
 /// Finds bodies whose load is much larger than their weight. Buffers are kept between steps.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Bearing {
+pub(super) struct MassScaling {
     /// The load of each body row. Empty in steps without overloaded bodies.
     loads: Vec<Load>,
     /// The two body rows of each pressing contact.
@@ -85,7 +85,7 @@ pub(super) fn sag_rate(params: &SubstepParams) -> f32 {
     max(params.soft.sag_rate(), params.h)
 }
 
-impl Bearing {
+impl MassScaling {
     /// Starts a step: no body has raised mass.
     pub(super) fn clear(&mut self) {
         self.loads.clear();

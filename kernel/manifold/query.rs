@@ -1,4 +1,4 @@
-//! How far, and at what, two shapes are looked at, and what is kept of it for the next time.
+//! Inputs of the functions that compute manifolds, and the cache from one step to the next.
 
 use crate::math::{Pose, Vector};
 use core::cell::Cell;
@@ -14,27 +14,28 @@ pub(super) struct PairInput<'a> {
     pub cache: &'a Cell<FeatureCache>,
 }
 
-/// How far two shapes are looked at.
+/// Inputs of a manifold computation besides the shapes: distance, motion, ground and groups.
 #[derive(Clone, Copy, Debug)]
-pub struct Look<'a> {
+pub struct ManifoldQuery<'a> {
     /// Points up to this distance are found, in metres.
     pub prediction: f32,
-    /// How far B moves against A until the end of the step, in A's frame. Parts that may be passed by are followed to where they
-    /// meet.
+    /// How far B moves against A until the end of the step, in A's frame. Parts that may be passed by are
+    /// followed to where they meet.
     pub motion: Vector,
     /// Parts farther away than this may be passed by. Nearer ones count as met, or may be met by turning.
     pub met: f32,
     /// Whether A and B are ground: not dynamic. Ground is never inside of what is dynamic.
     pub ground: [bool; 2],
-    /// The group of each facet of A and of B; facets beyond the list have 0. Manifolds of different groups are not merged.
+    /// The group of each facet of A and of B; facets beyond the list have 0. Manifolds of different groups
+    /// are not merged.
     pub groups: [&'a [u8]; 2],
 }
 
-impl<'a> Look<'a> {
+impl<'a> ManifoldQuery<'a> {
     /// All facets of both shapes in one group.
     pub const ALIKE: [&'static [u8]; 2] = [&[]; 2];
 
-    /// A look at two bodies up to a distance, without motion.
+    /// A query up to a distance, without motion.
     pub fn up_to(prediction: f32) -> Self {
         Self { prediction, motion: Vector::ZERO, met: f32::INFINITY, ground: [false; 2], groups: Self::ALIKE }
     }

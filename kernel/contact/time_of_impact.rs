@@ -1,12 +1,13 @@
 //! Contacts of a later time in the step: of shapes that will meet, and of round ones that rock on each other.
 //!
-//! The plane at the present closest points is no wall: what passes by would be stopped by it, and a point far out on a
-//! turning body moves along an arc. So the pair is followed to when it meets ([conservative advancement](advance)).
-//! The solver gets the contact of that time, with separations that bring it there. A pair that does not meet has none.
-//! Round bodies that rock get the contact of the middle of the step; see [`lead`].
+//! The plane at the present closest points is no wall: what passes by would be stopped by it, and a point far
+//! out on a turning body moves along an arc. So the pair is followed to when it meets ([conservative
+//! advancement](advance)). The solver gets the contact of that time, with separations that bring it there. A
+//! pair that does not meet has none. Round bodies that rock get the contact of the middle of the step; see
+//! [`midstep_contact`].
 
 #[cfg(test)]
-#[path = "tests_sweep.rs"]
+#[path = "tests_time_of_impact.rs"]
 mod tests;
 
 use super::input::{Sides, smaller};
@@ -39,8 +40,9 @@ pub(super) struct Placed {
     pub(super) shape: WorldPose,
 }
 
-/// Follows two native shapes, `gap` apart without margins, to the time when they meet in this step. `local` has their
-/// present points, if there are any within `prediction`, and receives those of that time, else none.
+/// Follows two native shapes, `gap` apart without margins, to the time when they meet in this step.
+/// `local` has their present points, if there are any within `prediction`, and receives those of that
+/// time, else none.
 #[inline(never)]
 pub(super) fn find_meeting(
     sides: &Sides,
@@ -96,8 +98,8 @@ pub(super) fn find_meeting(
     meeting
 }
 
-/// Whether two shapes that have points, and do not touch, may pass each other by in this step: their motion may cross the
-/// plane between them.
+/// Whether two shapes that have points, and do not touch, may pass each other by in this step: their motion
+/// may cross the plane between them.
 #[inline(always)]
 pub(super) fn may_pass_by(sides: &Sides, local: &LocalManifold) -> bool {
     let motion = Motion::new(sides);
@@ -113,8 +115,8 @@ pub(super) fn met_at(sides: &Sides) -> f32 {
     MET * Motion::new(sides).met
 }
 
-/// Whether the bodies turn little in this step. The solver keeps the arms of the step's start. What turns farther gains energy
-/// if it is pushed where it comes to.
+/// Whether the bodies turn little in this step. The solver keeps the arms of the step's start. What turns
+/// farther gains energy if it is pushed where it comes to.
 pub(super) fn is_straight(sides: &Sides) -> bool {
     sides.reaches().into_iter().enumerate().all(|(side, reach)| {
         reach.arm == 0.0 || sides.velocity(side).angular.length() * sides.input.dt < 0.5 * MOST_TURN
@@ -136,12 +138,13 @@ pub(super) fn pushes(sides: &Sides, local: &LocalManifold) -> bool {
     })
 }
 
-/// Moves the only point of `local`, with a round surface that presses another body, to where it is in the middle of the step,
-/// up to `prediction` apart. Leaves all other points as they are.
+/// Moves the only point of `local`, with a round surface that presses another body, to where it is in the
+/// middle of the step, up to `prediction` apart. Leaves all other points as they are.
 ///
-/// The solver keeps normals and arms for a step. The point where a round body rocks on another runs along both, and an arm
-/// that lags behind it feeds the rocking like a negative damper: a light body between heavy ones never came to rest.
-pub(super) fn lead(
+/// The solver keeps normals and arms for a step. The point where a round body rocks on another runs along
+/// both, and an arm that lags behind it feeds the rocking like a negative damper: a light body between heavy
+/// ones never came to rest.
+pub(super) fn midstep_contact(
     sides: &Sides,
     contact: &mut Contact,
     prediction: f32,
@@ -199,8 +202,8 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// An upper bound of the speed at which turning brings the shapes together. They meet no farther out than the other
-    /// shape reaches; `offset` is from A's to B's centre of mass.
+    /// An upper bound of the speed at which turning brings the shapes together. They meet no farther out than
+    /// the other shape reaches; `offset` is from A's to B's centre of mass.
     fn turning(&self, offset: Vector) -> f32 {
         let far = offset.length();
         let arm = |side: usize| match self.reaches[1 - side].extent {
@@ -250,8 +253,8 @@ struct View<'a> {
 }
 
 impl<'a> Slab<'a> {
-    /// How long the shapes take at least until the slab between them, `gap` wide along a normal from A to B, is half as wide as
-    /// what counts as having met; infinite if they take longer than `end`.
+    /// How long the shapes take at least until the slab between them, `gap` wide along a normal from A to B,
+    /// is half as wide as what counts as having met; infinite if they take longer than `end`.
     fn time_to_cross(&self, normal: Vector, gap: f32, end: f32) -> f32 {
         let goal = 0.5 * self.motion.met;
         let rate = self.motion.closing(normal, self.offset);
@@ -282,8 +285,9 @@ impl<'a> Slab<'a> {
             let normal = if moving == 0 { normal } else { -normal };
             let [offset, linear] = [self.offset, *linear].map(|v| if moving == 1 { v } else { -v });
             let speed = linear.length();
-            // A point r of the moving body, seen from the other centre of mass, is at x = Q⁻¹ (d + t v + P r), where Q and P turn
-            // by the angular velocities ω and ψ: x'' is at most ω² |d + t v| + 2 ω |v| + (ω + ψ)² |r|.
+            // A point r of the moving body, seen from the other centre of mass, is at x = Q⁻¹ (d + t v + P
+            // r), where Q and P turn by the angular velocities ω and ψ: x'' is at most ω² |d + t v| + 2
+            // ω |v| + (ω + ψ)² |r|.
             let both = spins[0] + spins[1];
             let away = offset.length() + speed * end;
             View {
@@ -321,7 +325,8 @@ impl View<'_> {
         self.width - closed
     }
 
-    /// A lower bound of the time until the width falls to `goal`; infinite if it does not by the `end`, when it is `last`.
+    /// A lower bound of the time until the width falls to `goal`; infinite if it does not by the `end`, when
+    /// it is `last`.
     ///
     /// The width's bound is concave over time. So a chord of it is below it, and is no later at the goal.
     fn time_to(&self, goal: f32, end: f32, last: f32) -> f32 {
@@ -370,8 +375,8 @@ impl Meeting {
         Self { placed, offset, shift: offset - sides.offset() }
     }
 
-    /// Changes the separations of a manifold to those at the step's start. The solver moves the bodies with these arms, and
-    /// so reaches the given separations at that time.
+    /// Changes the separations of a manifold to those at the step's start. The solver moves the bodies with
+    /// these arms, and so reaches the given separations at that time.
     pub(super) fn rewind(&self, m: &mut Manifold) {
         let n = m.normal;
         let cores = [n * m.radii[0], self.offset - n * m.radii[1]];

@@ -1,4 +1,5 @@
-//! What the search for contacts asks of both shapes: planes, the part that faces the other shape, and lines on the side.
+//! The features of both shapes that contacts are made of: planes, the part that faces the other shape, and
+//! lines on the side.
 
 use super::super::clip;
 use super::super::gjk::Core;
@@ -9,7 +10,7 @@ use crate::shape::Curved;
 use crate::tuning::manifold::{ROLLING, SIDEWAYS};
 
 /// The first shape of a pair, in its own frame.
-pub(super) trait Party: Core {
+pub(super) trait ShapeFeatures: Core {
     /// The radius around the core.
     fn radius(&self) -> f32;
     /// The distance from the centre to the farthest point, about.
@@ -26,13 +27,14 @@ pub(super) trait Party: Core {
     fn axis(&self) -> Option<[Vector; 2]>;
     /// The line of the core that is farthest along a direction, and across it.
     fn line_along(&self, direction: Vector) -> Option<[Vector; 2]>;
-    /// The distance from the surface to the axis or centre that it may roll about, along a normal; 0 if it cannot roll there.
+    /// The distance from the surface to the axis or centre that it may roll about, along a normal; 0 if it
+    /// cannot roll there.
     fn rolling(&self, normal: Vector) -> f32;
     /// The distance from a point in the core to its surface; negative outside.
     fn depth_of(&self, point: Vector) -> f32;
 }
 
-impl Party for View<'_> {
+impl ShapeFeatures for View<'_> {
     fn radius(&self) -> f32 {
         self.radius
     }
@@ -80,7 +82,7 @@ impl Party for View<'_> {
     }
 }
 
-impl Party for Curved {
+impl ShapeFeatures for Curved {
     fn radius(&self) -> f32 {
         0.0
     }
@@ -174,7 +176,8 @@ fn side_line(shape: &Curved, around: Vector) -> [Vector; 2] {
     [0, 1].map(|end| around * shape.radius_of(end) + Vector::Y * shape.height_of(end))
 }
 
-/// The part of a frustum that faces a direction of its own frame most, of those at the farthest point; in the outer frame.
+/// The part of a frustum that faces a direction of its own frame most, of those at the farthest point; in
+/// the outer frame.
 pub(super) fn facing<'a>(shape: &'a Curved, direction: Vector, frame: &MatrixPose) -> Patch<'a> {
     moved(shape.facing(direction), frame)
 }

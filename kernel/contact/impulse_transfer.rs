@@ -1,20 +1,21 @@
-//! Load that sliding colliders hand on from piece to piece of the ground.
+//! Impulses that sliding colliders transfer from piece to piece of the ground.
 //!
-//! A body that leaves a tile, or comes to another facet of a mesh, loses the contact points there with their impulses. It
-//! would have to sink for the other points to take its weight up again, and friction, limited by the impulses of the
-//! moment, would be too weak, and too strong as the body is lifted. So the impulses of points that a sliding collider loses
-//! go to the nearest points that it has with the same normal. Weight is kept, and with it friction.
+//! A body that leaves a tile, or comes to another facet of a mesh, loses the contact points there with their
+//! impulses. It would have to sink for the other points to take its weight up again, and friction, limited by
+//! the impulses of the moment, would be too weak, and too strong as the body is lifted. So the impulses of
+//! points that a sliding collider loses go to the nearest points that it has with the same normal. Weight is
+//! kept, and with it friction.
 //!
-//! Points are lost in parallel, and handed on by one thread in the order of contacts.
+//! Points are lost in parallel; one thread transfers their impulses in the order of contacts.
 
 use super::input::NarrowPhaseInput;
-use super::record::{Bearing, Contact, ContactFlags, Lost, Manifold, ManifoldPoint};
+use super::record::{Contact, ContactFlags, LoadPoint, LostImpulse, Manifold, ManifoldPoint};
 use super::table::ContactTable;
 use crate::math::{DIM, Vector};
 use crate::tuning::manifold::SAME_NORMAL;
 
 /// The manifolds of a sliding contact before it is recomputed.
-pub(super) struct Before {
+pub(super) struct PreviousManifold {
     side: usize,
     manifold: Manifold,
     /// As in [`Frozen`](super::Frozen).
@@ -31,23 +32,23 @@ fn place(side: usize, p: &ManifoldPoint, offset: Vector) -> Vector {
     if side == 0 { p.anchor } else { p.anchor - offset }
 }
 
-/// The points under load of a manifold of a contact, numbered from `first` on, each with what is lost with it. `side` is the
-/// one of the collider that slides. `offset` is as in [`Frozen`](super::Frozen).
+/// The points under load of a manifold of a contact, numbered from `first` on, each with what is lost with
+/// it. `side` is the one of the collider that slides. `offset` is as in [`Frozen`](super::Frozen).
 fn loaded(
     [contact, first]: [u32; 2],
     collider: u32,
     side: usize,
     m: &Manifold,
     offset: Vector,
-) -> impl Iterator<Item = (&ManifoldPoint, Lost)> {
+) -> impl Iterator<Item = (&ManifoldPoint, LostImpulse)> {
     let normal = toward(side, m);
     m.points().iter().zip(first..).filter(|(p, _)| p.impulse > 0.0).map(move |(p, number)| {
         let (place, impulse) = (place(side, p, offset), p.impulse);
-        (p, Lost { contact, number, collider, place, normal, impulse })
+        (p, LostImpulse { contact, number, collider, place, normal, impulse })
     })
 }
 
-impl Before {
+impl PreviousManifold {
     /// The manifolds of a contact, if it slides under load.
     #[inline(always)]
     pub(super) fn of(input: &NarrowPhaseInput, contact: &Contact) -> Option<Self> {
@@ -58,14 +59,15 @@ impl Before {
         Some(Self { side, manifold: contact.manifold, offset: contact.frozen.offset })
     }
 
-    /// Adds the points that the contact has no more. `old_extra` are its old manifolds after the first, `new` its present ones.
+    /// Adds the points that the contact has no more. `old_extra` are its old manifolds after the first, `new`
+    /// its present ones.
     pub(super) fn note_lost<'a>(
         &self,
         id: u32,
         contact: &Contact,
         old_extra: &[Manifold],
         new: impl Iterator<Item = &'a Manifold> + Clone,
-        lost: &mut Vec<Lost>,
+        lost: &mut Vec<LostImpulse>,
     ) {
         for (number, old) in core::iter::once(&self.manifold).chain(old_extra).enumerate() {
             let is_kept = |p: &ManifoldPoint| {
@@ -85,7 +87,7 @@ pub(super) fn note_internal(
     side: usize,
     contact: &Contact,
     m: &Manifold,
-    lost: &mut Vec<Lost>,
+    lost: &mut Vec<LostImpulse>,
 ) {
     // After those that were lost before.
     let first = (1 << 31) + index * m.points.len() as u32;
@@ -94,7 +96,7 @@ pub(super) fn note_internal(
 }
 
 /// The axis along which points are spread farthest.
-fn longest_axis(points: &[Bearing]) -> usize {
+fn longest_axis(points: &[LoadPoint]) -> usize {
     let Some(first) = points.first() else { return 0 };
     let (low, high) = points
         .iter()
@@ -103,12 +105,12 @@ fn longest_axis(points: &[Bearing]) -> usize {
     (1..DIM).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best })
 }
 
-/// The nearest point with the same normal as a lost one. Points are sorted along an axis; of two as near the first of the collider's
-/// is taken.
-fn nearest<'a>(points: &'a [Bearing], axis: usize, lost: &Lost) -> Option<&'a Bearing> {
-    let along = |p: &Bearing| p.place.to_array()[axis] - lost.place.to_array()[axis];
+/// The nearest point with the same normal as a lost one. Points are sorted along an axis; of two as near the
+/// first of the collider's is taken.
+fn nearest<'a>(points: &'a [LoadPoint], axis: usize, lost: &LostImpulse) -> Option<&'a LoadPoint> {
+    let along = |p: &LoadPoint| p.place.to_array()[axis] - lost.place.to_array()[axis];
     let (mut below, mut above) = points.split_at(points.partition_point(|p| along(p) < 0.0));
-    let (mut best, mut least) = (None::<&Bearing>, f32::INFINITY);
+    let (mut best, mut least) = (None::<&LoadPoint>, f32::INFINITY);
     loop {
         let p = match (below.split_last(), above.split_first()) {
             (Some((p, rest)), other) if other.is_none_or(|(q, _)| -along(p) < along(q)) => {
@@ -135,11 +137,12 @@ fn nearest<'a>(points: &'a [Bearing], axis: usize, lost: &Lost) -> Option<&'a Be
 
 impl ContactTable {
     /// Gives the impulses of lost points to the nearest ones, and empties the list.
-    pub(super) fn hand_on(&mut self, input: &NarrowPhaseInput) {
-        let (mut lost, mut points) = (core::mem::take(&mut self.lost), core::mem::take(&mut self.bearings));
+    pub(super) fn transfer_impulses(&mut self, input: &NarrowPhaseInput) {
+        let (mut lost, mut points) =
+            (core::mem::take(&mut self.lost), core::mem::take(&mut self.load_points));
         lost.sort_unstable_by_key(|lost| (lost.collider, lost.contact, lost.number));
         for of_one in lost.chunk_by(|a, b| a.collider == b.collider) {
-            self.list_bearings(input, of_one[0].collider, &mut points);
+            self.list_load_points(input, of_one[0].collider, &mut points);
             let axis = longest_axis(&points);
             points.sort_unstable_by(|a, b| a.place.to_array()[axis].total_cmp(&b.place.to_array()[axis]));
             for lost in of_one {
@@ -149,17 +152,17 @@ impl ContactTable {
         }
         lost.clear();
         points.clear();
-        (self.lost, self.bearings) = (lost, points);
+        (self.lost, self.load_points) = (lost, points);
     }
 
     /// Lists the points of a sliding collider that bear load.
-    fn list_bearings(&self, input: &NarrowPhaseInput, collider: u32, points: &mut Vec<Bearing>) {
+    fn list_load_points(&self, input: &NarrowPhaseInput, collider: u32, points: &mut Vec<LoadPoint>) {
         points.clear();
         for (id, index, side, m) in self.sliding_manifolds(input, collider).filter(|(.., m)| !m.is_internal) {
             let offset = self.get(id).frozen.offset;
             for (p, point) in m.points().iter().zip(0..).filter(|(p, _)| p.separation < input.tolerance) {
                 let (order, normal) = (points.len() as u32, toward(side, m));
-                points.push(Bearing {
+                points.push(LoadPoint {
                     contact: id,
                     index,
                     point,
@@ -171,8 +174,8 @@ impl ContactTable {
         }
     }
 
-    /// The manifolds of the contacts in which a collider slides: the contact, the number of the manifold in it, and the side of
-    /// the collider.
+    /// The manifolds of the contacts in which a collider slides: the contact, the number of the manifold in
+    /// it, and the side of the collider.
     pub(super) fn sliding_manifolds(
         &self,
         input: &NarrowPhaseInput,

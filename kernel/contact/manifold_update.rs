@@ -3,15 +3,15 @@
 use super::buffers::WorkerBuffers;
 use super::input::Sides;
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
-use super::sweep::Meeting;
-use crate::manifold::{self, FeatureCache, LocalManifold, Look};
+use super::time_of_impact::Meeting;
+use crate::manifold::{self, FeatureCache, LocalManifold, ManifoldQuery};
 use crate::math::{Pose, Rot, Vector, min};
 use crate::shape::{Ball, Shape};
 use crate::tuning::contact::SAME_FACE;
 
-/// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart, margins not
-/// subtracted. Points on rims are where they will be in the middle of the step; returns how far the surfaces may move until
-/// these lag behind.
+/// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart,
+/// margins not subtracted. Points on rims are where they will be in the middle of the step; returns how far
+/// the surfaces may move until these lag behind.
 #[inline(always)]
 pub(super) fn collide(
     sides: &Sides,
@@ -26,21 +26,23 @@ pub(super) fn collide(
         return f32::INFINITY;
     }
     let spin = sides.velocity(1).angular - sides.velocity(0).angular;
-    // A point that does not touch, moved past a seam of the ground, would not be recognised as one of an inner edge.
+    // A point that does not touch, moved past a seam of the ground, would not be recognised as one of
+    // an inner edge.
     let (near, turn) = (sides.margin(), spin * (0.5 * sides.input.dt));
-    manifold::lead_rims(shapes, sides.frame(), &relative, turn, near, local)
+    manifold::midstep_rims(shapes, sides.frame(), &relative, turn, near, local)
 }
 
-/// Whether a ball overlaps a shape, given the ball's pose in the shape's frame. Shapes of the embedder are not known: false.
+/// Whether a ball overlaps a shape, given the ball's pose in the shape's frame. Shapes of the embedder are
+/// not known: false.
 pub(super) fn touches(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut WorkerBuffers) -> bool {
     let WorkerBuffers { composite, local, .. } = buffers;
     let (ball, mut found) = (Shape::Ball(ball), LocalManifold::default());
     match shape {
         Shape::Foreign(_) => return false,
         Shape::Composite(_) => {
-            let look = Look::up_to(0.0);
+            let query = ManifoldQuery::up_to(0.0);
             local.clear();
-            manifold::collide_composite(shape, &ball, pose, look, composite, local);
+            manifold::collide_composite(shape, &ball, pose, query, composite, local);
             return !local.is_empty();
         }
         _ => manifold::collide(shape, &ball, pose, 0.0, &mut FeatureCache::NONE.clone(), &mut found),
@@ -48,9 +50,9 @@ pub(super) fn touches(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut Work
     found.count > 0
 }
 
-/// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of B against A in
-/// this step, in world axes; parts farther away than `met` may be passed by. Returns a lower bound of the distance between the
-/// shapes.
+/// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of
+/// B against A in this step, in world axes; parts farther away than `met` may be passed by. Returns a lower
+/// bound of the distance between the shapes.
 pub(super) fn collide_parts(
     sides: &Sides,
     contact: &mut Contact,
@@ -64,16 +66,17 @@ pub(super) fn collide_parts(
         facets.map_or(&[][..], |facets| facets.groups())
     });
     let ground = sides.are_dynamic().map(|is_dynamic| !is_dynamic);
-    let look = Look { prediction, motion: sides.frame().inverse_rotate(motion), met, ground, groups };
+    let query =
+        ManifoldQuery { prediction, motion: sides.frame().inverse_rotate(motion), met, ground, groups };
     let WorkerBuffers { composite, local, .. } = buffers;
     composite.cache = contact.cache;
-    let gap = manifold::collide_composite(shapes[0], shapes[1], &relative, look, composite, local);
+    let gap = manifold::collide_composite(shapes[0], shapes[1], &relative, query, composite, local);
     contact.cache = composite.cache;
     gap
 }
 
-/// Removes the points of a sensor's contact at which the surfaces are apart and do not meet in this step. Returns the least
-/// separation of those, or infinity.
+/// Removes the points of a sensor's contact at which the surfaces are apart and do not meet in this step.
+/// Returns the least separation of those, or infinity.
 pub(super) fn keep_met(sides: &Sides, found: &mut Vec<LocalManifold>) -> f32 {
     let motion = sides.frame().inverse_rotate(sides.predicted_motion());
     let margin = sides.margin();
@@ -95,8 +98,8 @@ pub(super) fn keep_met(sides: &Sides, found: &mut Vec<LocalManifold>) -> f32 {
     gap
 }
 
-/// Puts the manifolds in `buffers.local` in place of the contact's. Old points hand on their impulses. Manifolds after
-/// the first come to `buffers.extra`; `old_extra` are the old ones.
+/// Puts the manifolds in `buffers.local` in place of the contact's. Points keep the impulses of the old ones.
+/// Manifolds after the first come to `buffers.extra`; `old_extra` are the old ones.
 pub(super) fn replace(
     sides: &Sides,
     contact: &mut Contact,
@@ -165,10 +168,11 @@ fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32)
 
 /// Varies which point comes first over the contacts. Points that follow each other in pairs still do.
 ///
-/// The solver takes points one after the other, which favours some a little. If these were on the same side in every
-/// contact, a stack would lean to that side as it settles. So the numbers of the colliders choose the first point, by the R₂
-/// sequence (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018): it spreads evenly along numbers
-/// that count up in one collider and in both. Bits of the sum of the numbers would follow the rows of a wall.
+/// The solver takes points one after the other, which favours some a little. If these were on the same side
+/// in every contact, a stack would lean to that side as it settles. So the numbers of the colliders choose
+/// the first point, by the R₂ sequence (M. Roberts, "The unreasonable effectiveness of quasirandom
+/// sequences", 2018): it spreads evenly along numbers that count up in one collider and in both. Bits of the
+/// sum of the numbers would follow the rows of a wall.
 fn vary_first(m: &mut Manifold, [a, b]: [u32; 2]) {
     // 2³² / ρ and 2³² / ρ², where ρ³ = ρ + 1.
     const R2: [u32; 2] = [0xC13F_A9A9, 0x91E1_0DA6];
@@ -183,8 +187,8 @@ fn vary_first(m: &mut Manifold, [a, b]: [u32; 2]) {
     }
 }
 
-/// Copies the impulses of the old manifold that this one continues, of the same facets' material with the nearest normal. Points are matched by
-/// feature id.
+/// Copies the impulses of the old manifold that this one continues, of the same facets' material with the
+/// nearest normal. Points are matched by feature id.
 fn inherit<'a>(m: &mut Manifold, old: impl Iterator<Item = &'a Manifold>) {
     let mut best: Option<(&Manifold, f32)> = None;
     for o in old.filter(|o| o.count > 0 && o.groups == m.groups) {

@@ -1,9 +1,9 @@
 //! Rows of custom constraints in a batch. A row has one constraint per lane, run one after the other.
 #![expect(unsafe_code, reason = "blocks of one stage are changed at once")]
 
-use super::super::batch::{Batch, Filling, Pass, Passes, Sweep};
+use super::super::batch::{Batch, Filling, SolverPass, SolverPasses, Sweep};
+use super::super::color_layer::{ColorLayer, Sorter};
 use super::super::input::Item;
-use super::super::layer::{Layer, Sorter};
 use super::super::{BodyRow, MassRow, RowView};
 use super::body::CustomBody;
 use super::table::{CustomTable, Records};
@@ -31,7 +31,7 @@ pub(in super::super) fn sort_customs(
     batch: usize,
     table: &CustomTable,
     sorter: &Sorter,
-    layer: &mut Layer,
+    layer: &mut ColorLayer,
 ) {
     let parts = layer.parts();
     for &id in customs.iter().filter(|id| table.acts(**id)) {
@@ -88,7 +88,7 @@ impl<'a> CustomView<'a> {
 }
 
 impl Batch for CustomView<'_> {
-    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> Passes {
+    unsafe fn fill(&self, rows: Range<usize>, items: &[Item], from: &Filling) -> SolverPasses {
         // SAFETY: by the contract.
         let slots = unsafe { self.take(rows) };
         slots.fill(None);
@@ -103,10 +103,10 @@ impl Batch for CustomView<'_> {
             }
             *slot = Some(row);
         }
-        Passes::BASIC
+        SolverPasses::BASIC
     }
 
-    unsafe fn run(&self, rows: Range<usize>, _: Passes, sweep: &Sweep) {
+    unsafe fn run(&self, rows: Range<usize>, _: SolverPasses, sweep: &Sweep) {
         // SAFETY: by the contract.
         for row in unsafe { self.take(rows) }.iter_mut().flatten() {
             // SAFETY: a constraint is in one row, so by the contract no other thread uses its record.
@@ -116,10 +116,10 @@ impl Batch for CustomView<'_> {
             unsafe { row.load(&sweep.bodies) };
             let [a, b] = &mut row.bodies;
             match sweep.pass {
-                Pass::WarmStart => act.warm_start([a, b], sweep.params),
-                Pass::Solve => act.solve([a, b], sweep.params, true),
-                Pass::Relax => act.solve([a, b], sweep.params, false),
-                Pass::UndoSplit | Pass::Measure => continue,
+                SolverPass::WarmStart => act.warm_start([a, b], sweep.params),
+                SolverPass::Solve => act.solve([a, b], sweep.params, true),
+                SolverPass::Relax => act.solve([a, b], sweep.params, false),
+                SolverPass::UndoSplit | SolverPass::Measure => continue,
             }
             // SAFETY: by the contract.
             record.is_faulty |= !unsafe { row.save(&sweep.bodies) };

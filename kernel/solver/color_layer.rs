@@ -1,14 +1,14 @@
 //! The constraints of one colour, sorted into the lists from which stages are planned.
 
 use super::input::{Item, RowInput};
-use super::shares::Shares;
+use super::partition::Partition;
 use crate::math::Vector;
 
 /// Items without a common dynamic body, in one list for each part of the stage and each batch.
 ///
 /// Each manifold of a contact is in a layer of its own, so that no stage has a body twice.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Layer {
+pub(super) struct ColorLayer {
     /// The lists. The last ones may be unused.
     lists: Vec<Vec<Item>>,
     batches: usize,
@@ -17,7 +17,7 @@ pub(super) struct Layer {
     order: Option<Vec<u16>>,
 }
 
-impl Layer {
+impl ColorLayer {
     /// Clears the layer, and prepares a list for each batch of each part.
     pub(super) fn begin(&mut self, batches: usize, parts: usize) {
         (self.batches, self.parts) = (batches, parts);
@@ -72,7 +72,7 @@ pub(super) struct Sorter<'a> {
     pub(super) input: &'a RowInput<'a>,
     /// As in [`BodyRows`](super::BodyRows).
     pub(super) axes: &'a [Vector],
-    pub(super) shares: &'a Shares,
+    pub(super) partition: &'a Partition,
 }
 
 impl Sorter<'_> {
@@ -86,6 +86,10 @@ impl Sorter<'_> {
     /// The part that a constraint between two bodies belongs to.
     #[inline(always)]
     pub(super) fn part(&self, id: u32, bodies: [u32; 2], parts: usize) -> usize {
-        if parts == 1 { 0 } else { self.shares.part(bodies.map(|body| self.input.row_of(body)), id, parts) }
+        if parts == 1 {
+            0
+        } else {
+            self.partition.part(bodies.map(|body| self.input.row_of(body)), id, parts)
+        }
     }
 }
