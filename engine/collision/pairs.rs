@@ -27,8 +27,8 @@ use crate::{
     threads::Threads,
 };
 
-/// Growth of a fat box on every side, times the length unit. Small shapes get less. More finds more pairs
-/// that never touch, less updates the trees more often.
+/// Growth of a fat box on every side, times the length unit. Small shapes get less. A larger margin finds
+/// more pairs that never touch; a smaller margin updates the trees more often.
 const FAT_MARGIN: f32 = 0.05;
 
 /// Settings of fat boxes.
@@ -47,8 +47,8 @@ impl FatBoxes<'_> {
 /// The components with a collider's boxes.
 type Boxes = (&'static ColliderId, &'static mut ColliderAabb, &'static mut EnlargedAabb);
 
-/// Moves colliders that were added or changed by the app, and their leaves. Boxes of bodies whose velocity
-/// the app set are swept along it, since they may hit something in this step.
+/// Updates the boxes and leaves of colliders that the app added or changed. If the app set the velocity of a
+/// body, its boxes are swept along the velocity, because it may hit something in this step.
 pub(crate) fn update_stale_boxes(
     (fat_boxes, threads): (FatBoxes, Res<Threads>),
     mut tables: Tables,
@@ -92,7 +92,7 @@ pub(crate) fn update_stale_boxes(
     diagnostics.update += start.elapsed();
 }
 
-/// Marks colliders of bodies as stale whose velocity was set by hand.
+/// Marks the colliders of bodies whose velocity was set by hand as stale.
 fn mark_pushed(bodies: &mut BodyTable, colliders: &mut Colliders) {
     for body in bodies.pushed.iter() {
         for id in colliders.table.of_body(body, bodies) {
@@ -102,7 +102,7 @@ fn mark_pushed(bodies: &mut BodyTable, colliders: &mut Colliders) {
     bodies.pushed.clear();
 }
 
-/// After the solver: updates the boxes of moved bodies in trees and components.
+/// Runs after the solver: updates the boxes of moved bodies in trees and components.
 pub(crate) fn refit_awake(
     (fat_boxes, threads): (FatBoxes, Res<Threads>),
     bodies: Res<Bodies>,
@@ -146,7 +146,7 @@ pub(crate) fn refit_awake(
     diagnostics.update += start.elapsed();
 }
 
-/// The boxes to be written.
+/// Access to the boxes that are written to components.
 struct Shown<'a> {
     bodies: &'a BodyTable,
     colliders: &'a ColliderTable,
@@ -174,7 +174,7 @@ fn to_public(aabb: &kernel::shape::Aabb) -> ColliderAabb {
 pub(crate) struct PairSearch {
     found: FoundPairs,
     movers: Movers,
-    /// Places of pairs that hooks have rejected.
+    /// Indices of pairs that hooks rejected.
     rejected: BitSet,
 }
 
@@ -189,21 +189,19 @@ impl PairSearch {
     }
 }
 
-/// Pairs to be skipped: of one body, in a crowd, or with a contact.
+/// Pairs that the search skips: colliders of one body, colliders in a crowd, and pairs with a contact.
 struct Contacted<'a> {
-    bodies: &'a BodyTable,
     colliders: &'a ColliderTable,
     contacts: &'a ContactTable,
 }
 
 impl Known for Contacted<'_> {
-    /// Colliders of one body, and bodies in one place, may overlap in thousands of pairs. They are
-    /// not even listed.
+    /// Colliders of one body, and bodies at one place, may overlap in thousands of pairs. The search does not
+    /// even list these pairs.
     #[inline]
     fn is_plain(&self, a: u32, b: u32) -> bool {
         let body = self.colliders.body(a);
-        body == self.colliders.body(b) && body != NONE
-            || self.contacts.is_superfluous([a, b], self.colliders, self.bodies)
+        body == self.colliders.body(b) && body != NONE || self.contacts.is_superfluous([a, b])
     }
 
     #[inline]
@@ -221,7 +219,6 @@ impl Known for Contacted<'_> {
 pub(crate) fn find_new_pairs(
     mut search: ResMut<PairSearch>,
     mut threads: ResMut<Threads>,
-    bodies: Res<Bodies>,
     mut colliders: ResMut<Colliders>,
     contacts: Res<Contacts>,
     mut diagnostics: ResMut<CollisionDiagnostics>,
@@ -230,24 +227,21 @@ pub(crate) fn find_new_pairs(
     let PairSearch { found, movers, rejected } = &mut *search;
     rejected.clear();
     let Colliders { table, trees, moved, .. } = &mut *colliders;
-    if !table.relieved.is_empty() {
-        moved.union_with(&table.relieved);
-        table.relieved.clear();
-    }
+    contacts.table.full().for_each(|id| _ = moved.insert(id));
     if moved.is_empty() {
         found.clear();
         threads.wake_for_pairs(0);
     } else {
         trees.movers(moved, &table.fat, movers);
         moved.clear();
-        let known = Contacted { bodies: &bodies.table, colliders: table, contacts: &contacts.table };
+        let known = Contacted { colliders: table, contacts: &contacts.table };
         threads.wake_for_pairs(movers.list().len());
         found.find(&trees.trees, movers, &known, &threads.pool);
     }
     diagnostics.broad_phase = start.elapsed();
 }
 
-/// Adds contacts for the pairs found that may collide, in the order of ids.
+/// Adds contacts for the found pairs that may collide, in order of ids.
 pub(crate) fn add_contacts(
     search: Res<PairSearch>,
     mut tables: Tables,
@@ -256,10 +250,10 @@ pub(crate) fn add_contacts(
     let start = bevy_platform::time::Instant::now();
     let mut sleepers = Vec::new();
     for (place, &(a, b)) in search.found.pairs().iter().enumerate() {
-        let colliders = &tables.colliders.table;
-        if tables.bodies.may_pair(colliders, [a, b])
+        let (bodies, colliders) = (&tables.bodies, &tables.colliders.table);
+        if bodies.may_pair(colliders, [a, b])
             && !search.rejected.contains(place as u32)
-            && !tables.contacts.table.is_superfluous([a, b], colliders, &tables.bodies.table)
+            && tables.contacts.table.admits([a, b], colliders, &bodies.table)
         {
             sleepers.extend(add_contact(&mut tables, [a, b], ContactFlags::default()));
         }
@@ -268,8 +262,8 @@ pub(crate) fn add_contacts(
     diagnostics.broad_phase += start.elapsed();
 }
 
-/// Adds the contact of a pair that has none, with bits besides those that follow from the colliders. Returns
-/// a sleeping body for [`wake_beset`].
+/// Adds the contact of a new pair, with `flags` in addition to the flags that follow from the colliders.
+/// Returns a sleeping body for [`wake_beset`].
 pub(crate) fn add_contact(tables: &mut Tables, [a, b]: [u32; 2], flags: ContactFlags) -> Option<u32> {
     let mut manager = tables.contact_manager();
     let id = manager.create_with(a, b, flags);
@@ -281,7 +275,7 @@ pub(crate) fn add_contact(tables: &mut Tables, [a, b]: [u32; 2], flags: ContactF
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct FilterPairs;
 
-/// Wakes sleeping bodies beside which something static, or kinematic at rest, appeared. Bodies that were put
+/// Wakes sleeping bodies if a static collider, or a kinematic one at rest, appeared beside them. Bodies put
 /// to sleep in this step stay asleep: a level may be spawned asleep.
 pub(crate) fn wake_beset(sleepers: &[u32], tables: &mut Tables) {
     if sleepers.is_empty() {

@@ -1,9 +1,9 @@
 //! The contact manager: it alone creates and destroys contacts and other constraints, and changes colours,
 //! islands and sleep.
 //!
-//! Rules it keeps: a contact is active while one of its bodies is awake; a constraint has a colour while it
-//! is solved and one of its dynamic bodies is awake; two dynamic bodies it is solved between are in one
-//! island; the bodies of an island are awake or asleep together.
+//! Invariants: a contact is active while one of its bodies is awake; a constraint has a colour while it is
+//! solved and one of its dynamic bodies is awake; its two dynamic bodies share an island while it is solved;
+//! the bodies of an island are awake or asleep together.
 
 use super::record::{Contact, ContactFlags};
 use super::table::ContactTable;
@@ -22,7 +22,7 @@ pub enum Status {
     Ended,
 }
 
-/// All that a change of contacts and other constraints touches.
+/// All tables that a change of contacts or other constraints touches.
 pub struct ContactManager<'a> {
     /// The bodies.
     pub bodies: &'a mut BodyTable,
@@ -42,7 +42,7 @@ impl ContactManager<'_> {
         self.create_with(a, b, ContactFlags::default())
     }
 
-    /// The same, with bits besides those that follow from the colliders, such as [`ContactFlags::QUIET`].
+    /// As [`create`](Self::create), with additional bits such as [`ContactFlags::QUIET`].
     pub fn create_with(&mut self, a: u32, b: u32, extra: ContactFlags) -> u32 {
         let colliders = [a.min(b), a.max(b)];
         let bodies = colliders.map(|c| self.colliders[c].def.body);
@@ -54,9 +54,8 @@ impl ContactManager<'_> {
         id
     }
 
-    /// Acts on what the narrow phase found, in the order of ids, and restarts the sleep timers of
-    /// islands that were woken: to be called in every step, before bodies are finished. `report` hears
-    /// of each change.
+    /// Applies the changes found by the narrow phase, in the order of ids, and restarts the sleep timers of
+    /// woken islands. Call it in every step, before bodies are finished. `report` is called for each change.
     pub fn apply(&mut self, changed: &BitSet, mut report: impl FnMut(u32, &Contact, Status)) {
         for id in changed.iter() {
             if !self.contacts.is_live(id) {
@@ -92,15 +91,15 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Has the next narrow phase update those contacts of a collider that push nothing, although both bodies
-    /// are at rest: after the collider was moved, or added. Others wait until a body wakes.
+    /// Has the next narrow phase update the inert contacts of a collider although both bodies are at rest,
+    /// after the collider was moved or added. Other contacts wait until a body wakes.
     pub fn visit_of_collider(&mut self, collider: u32) {
         for id in self.contacts_of_collider(collider) {
             self.visit(id);
         }
     }
 
-    /// Has the next narrow phase update a contact that pushes nothing, although both bodies are at rest.
+    /// Has the next narrow phase update an inert contact although both bodies are at rest.
     pub fn visit(&mut self, id: u32) {
         if self.contacts.get(id).is_inert() && !self.contacts.is_active(id) {
             self.contacts.activate(id);
@@ -108,7 +107,7 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Removes a contact. What it held up is woken.
+    /// Removes a contact. Wakes its bodies if it was solved.
     pub fn destroy(&mut self, id: u32) {
         let contact = self.contacts.get(id);
         if contact.is_solved() {
@@ -135,15 +134,16 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Removes a body whose colliders are gone, with its constraints. What these held is woken.
+    /// Removes a body without colliders, with its constraints. Wakes the bodies of solved constraints.
     pub fn leave(&mut self, body: u32) {
         self.disconnect_body(body);
         self.leave_island(body);
+        self.contacts.crowded.remove(body);
         self.bodies.remove(body);
     }
 
-    /// Changes what moves a body. Its contacts and other constraints stay, in new colours and islands; it
-    /// wakes, and so does what it touches or is held by.
+    /// Changes the kind of a body. Its contacts and other constraints stay, in new colours and islands. The
+    /// body wakes, with the bodies that it touches or is connected to.
     pub fn retype(&mut self, body: u32, kind: BodyKind) {
         let old = self.bodies[body].kind;
         if old == kind {
@@ -169,9 +169,8 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Re-reads what its colliders say of a contact after one of them was redefined in place. Its
-    /// manifold is computed anew; its colour and island change only if it responds now and did not
-    /// before, or the reverse.
+    /// Updates the flags of a collider's contacts after the collider was redefined in place. Their manifolds
+    /// are recomputed; colour and island change only if a contact begins or ceases to respond.
     pub fn reflag_of_collider(&mut self, collider: u32) {
         for id in self.contacts_of_collider(collider) {
             let flags = self.fresh_flags(id);
@@ -189,7 +188,7 @@ impl ContactManager<'_> {
         self.mix_of_collider(collider);
     }
 
-    /// Wakes the island of a dynamic body, or a kinematic body alone. Nothing for static ones and
+    /// Wakes the island of a dynamic body, or a kinematic body alone. Does nothing for static bodies and
     /// [`NONE`].
     pub fn wake_body(&mut self, body: u32) {
         if body == NONE {
@@ -227,8 +226,8 @@ impl ContactManager<'_> {
         }
     }
 
-    /// The sleeping body of a contact whose other body does not move either, because it is static or a
-    /// kinematic one at rest. The narrow phase skips such a contact until the sleeping body wakes.
+    /// The sleeping body of a contact whose other body does not move either, because it is static, or
+    /// kinematic and at rest. The narrow phase skips such a contact until the sleeping body wakes.
     pub fn unseen_sleeper(&self, id: u32) -> Option<u32> {
         let contact = self.contacts.get(id);
         if contact.is_inert() || contact.bodies.iter().any(|b| self.is_awake(*b)) {
@@ -240,8 +239,8 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Wakes what a body touches or is held by, as after it was moved by hand; and what it is near, where the
-    /// contact is [unseen](Self::unseen_sleeper).
+    /// Wakes the bodies that a body touches or is connected to, as after it was moved by hand. Also wakes
+    /// nearby bodies whose contact is [unseen](Self::unseen_sleeper).
     pub fn wake_touching(&mut self, body: u32) {
         for id in self.contacts_of_body(body) {
             if let Some(sleeper) = self.unseen_sleeper(id).filter(|sleeper| *sleeper != body) {
@@ -256,7 +255,8 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Wakes a body and what it touches, as after a collider of it changed. Nothing for [`NONE`].
+    /// Wakes a body and the bodies that it touches, as after one of its colliders changed. Does nothing for
+    /// [`NONE`].
     pub fn wake_with_touching(&mut self, body: u32) {
         if body != NONE {
             self.wake_body(body);
@@ -264,8 +264,8 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Wakes all bodies of an island and has them rest anew, at once or, where the island is awake, when
-    /// [`apply`](Self::apply) is next called: so all that wakes an island in one step costs one walk over it.
+    /// Wakes all bodies of an island and restarts their sleep timers. For an awake island the timers restart
+    /// in the next [`apply`](Self::apply), so that many calls in one step cost one walk over the island.
     pub fn wake_island(&mut self, island: IslandId) {
         let Some(islands) = &mut self.islands else { return };
         if !islands.is_asleep(island) {
@@ -277,8 +277,8 @@ impl ContactManager<'_> {
         self.set_island_awake(island, true);
     }
 
-    /// Whether a body of the island is in contact with a kinematic one that moves: such an island must not
-    /// sleep, however slowly it is carried, or its support would leave without it.
+    /// Whether a moving kinematic body is connected to a body of the island. Then the island must not sleep,
+    /// however slowly it is carried, or its support would move away without it.
     pub fn is_carried(&self, island: IslandId) -> bool {
         self.islands.as_ref().is_some_and(|islands| islands.carriers(island) > 0)
     }
@@ -311,7 +311,7 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Wakes a kinematic body, and what it touches, or lets it rest.
+    /// Wakes a kinematic body and the bodies that it touches, or puts it to rest.
     pub fn set_kinematic_awake(&mut self, body: u32, awake: bool) {
         if self.bodies[body].kind != BodyKind::Kinematic || self.bodies[body].awake == awake {
             return;
@@ -341,14 +341,14 @@ impl ContactManager<'_> {
         ids
     }
 
-    /// Gives a collider another surface.
+    /// Replaces the material of a collider.
     pub fn set_material(&mut self, collider: u32, material: Material) {
         if core::mem::replace(&mut self.colliders[collider].def.material, material) != material {
             self.mix_of_collider(collider);
         }
     }
 
-    /// Gives the facets of a collider other materials. Its contacts are computed anew.
+    /// Replaces the facet materials of a collider. Its contacts are recomputed.
     pub fn set_facets(&mut self, collider: u32, facets: Option<Arc<FacetMaterials>>) {
         if self.colliders[collider].def.facets != facets {
             self.colliders[collider].def.facets = facets;
@@ -356,20 +356,20 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Mixes the surfaces of a collider's contacts anew.
+    /// Updates the mixed coefficients of a collider's contacts.
     fn mix_of_collider(&mut self, collider: u32) {
         for id in self.contacts_of_collider(collider) {
             self.contacts.get_mut(id).surface = self.mixed(self.contacts.get(id).colliders);
         }
     }
 
-    /// The coefficients of two surfaces together.
+    /// The mixed friction and restitution of two colliders.
     fn mixed(&self, colliders: [u32; 2]) -> [f32; 2] {
         let [a, b] = colliders.map(|c| &self.colliders[c].def.material);
         [a.friction.mix(b.friction), a.restitution.mix(b.restitution)]
     }
 
-    /// What a pair is, by its colliders and bodies.
+    /// The flags of a pair, from its colliders and bodies.
     fn flags(&self, colliders: [u32; 2], bodies: [u32; 2]) -> ContactFlags {
         let defs = colliders.map(|c| &self.colliders[c].def);
         let mut flags = ContactFlags::default();
@@ -384,7 +384,7 @@ impl ContactManager<'_> {
         flags
     }
 
-    /// What a contact's pair is now. It touches as it did; its manifold is computed anew.
+    /// The present flags of a contact's pair. `TOUCHING` and `QUIET` stay; the manifold will be recomputed.
     fn fresh_flags(&self, id: u32) -> ContactFlags {
         let contact = self.contacts.get(id);
         let mut flags = self.flags(contact.colliders, contact.bodies);
@@ -398,7 +398,7 @@ impl ContactManager<'_> {
     ///
     /// # Panics
     ///
-    /// With the invariant that does not hold.
+    /// If an invariant does not hold; the message names it.
     pub fn validate(&self) {
         self.contacts.validate(self.colliders);
         self.colors.validate(|kind, id| {

@@ -1,9 +1,9 @@
 //! The narrow phase, top to bottom: awake contacts are classified by their boxes and motion, then recycled or
-//! recomputed, and what only the table can store is committed at the end.
+//! recomputed, and results that only the table can store are committed at the end.
 //!
 //! Helpers are called from here and do not call back: [`recycle`](super::recycle) keeps manifolds,
 //! [`manifold_update`] and [`time_of_impact`] compute them, [`impulse_transfer`](super::impulse_transfer)
-//! transfers their impulses, [`calm`](super::calm) holds what follows from them.
+//! transfers their impulses, [`calm`](super::calm) derives the contact's state from them.
 #![expect(unsafe_code, reason = "several threads change contacts, each other ones")]
 
 use super::buffers::WorkerBuffers;
@@ -14,13 +14,15 @@ use super::record::{Contact, ContactFlags, Frozen, Manifold};
 use super::table::{ContactTable, PointCount, Stored};
 use super::time_of_impact::{self, Meeting};
 use crate::data::{BitSet, Parts};
+use crate::graph::COLOR_COUNT;
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Vector, max, min};
 use crate::table::NONE;
 use crate::thread_pool::ThreadPool;
+use std::collections::BTreeMap;
 
 /// The size of a block of contacts, in words of 64 ids. Recycling a block takes some microseconds. Smaller
-/// blocks cost more to hand out; larger ones balance worse.
+/// blocks cost more to hand out; larger blocks balance worse.
 const BLOCK: usize = 2;
 
 /// The prefetch distance, in contacts. Shorter does not hide the latency of memory; longer evicts
@@ -71,9 +73,13 @@ impl ContactTable {
         self.transfer_impulses(input);
     }
 
-    /// Finds the dynamic bodies that overlap others deeply.
+    /// Finds the dynamic bodies that overlap other bodies deeply, and their full colliders.
     fn find_crowded(&mut self, input: &NarrowPhaseInput) {
         self.crowded.clear();
+        self.added = [BTreeMap::new(), core::mem::take(&mut self.added[0])];
+        self.deep_counts.clear();
+        core::mem::swap(&mut self.full, &mut self.were_full);
+        self.full.clear();
         if !self.any_deep {
             return;
         }
@@ -84,10 +90,19 @@ impl ContactTable {
                 dynamic.for_each(|body| _ = self.crowded.insert(body));
             }
         }
+        for id in self.active.iter() {
+            let Contact { bodies, colliders, flags, .. } = &self.contacts[id as usize];
+            let touches = flags.has(ContactFlags::TOUCHING) && !flags.has(ContactFlags::SENSOR);
+            if touches && bodies.iter().all(|body| *body != NONE && self.crowded.contains(*body)) {
+                colliders.iter().for_each(|collider| *self.deep_counts.entry(*collider).or_insert(0) += 1);
+            }
+        }
+        let full = self.deep_counts.iter().filter(|(_, count)| **count >= COLOR_COUNT);
+        full.for_each(|(collider, _)| _ = self.full.insert(*collider));
     }
 
-    /// Commits what the workers found. Manifolds after the first are stored in the order of contacts, not of
-    /// workers, so that equal steps give equal tables.
+    /// Commits the results of the workers. Manifolds after the first are stored in the order of contacts, not
+    /// of workers, so that equal steps give equal tables.
     fn commit(&mut self, workers: &[WorkerBuffers], changed: &mut BitSet) {
         self.any_deep = workers.iter().any(|worker| worker.any_deep);
         let mut stored = core::mem::take(&mut self.stored);
@@ -108,13 +123,13 @@ impl ContactTable {
     }
 }
 
-/// An update of all contacts while it runs; shared by the workers.
+/// A running update of all contacts, shared by the workers.
 struct ContactUpdate<'a> {
     input: &'a NarrowPhaseInput<'a>,
     contacts: Parts<'a, Contact>,
     points: Parts<'a, PointCount>,
     extra: Parts<'a, Vec<Manifold>>,
-    /// The bodies that overlapped others deeply before this update, if there are any.
+    /// The bodies that overlapped other bodies deeply before this update, if there are any.
     crowded: Option<&'a BitSet>,
 }
 
@@ -144,8 +159,8 @@ impl<'a> ContactUpdate<'a> {
                 self.recompute(id, contact, unsafe { self.points.one(id as usize) }, worker);
             }
             if worker.batch.is_full() {
-                // SAFETY: the batch holds contacts of this block, and the references above are
-                // in use no more.
+                // SAFETY: the batch holds contacts of this block, and the references above are no longer in
+                // use.
                 unsafe { self.recycle_batch(worker) };
             }
         }
@@ -163,7 +178,8 @@ impl<'a> ContactUpdate<'a> {
         worker.batch.evaluate(self.input);
         for place in 0..worker.batch.ids().len() {
             let id = worker.batch.ids()[place];
-            // SAFETY: by the contract both are this thread's; those of the contact before are in use no more.
+            // SAFETY: by the contract both belong to this thread; references to the previous contact are no
+            // longer in use.
             let (contact, count) = unsafe { (self.contacts.one(id as usize), self.points.one(id as usize)) };
             // SAFETY: a slot belongs to one contact.
             let extra = unsafe { self.extra(contact) };
@@ -211,7 +227,7 @@ impl<'a> ContactUpdate<'a> {
         worker.any_deep |= contact.flags.has(ContactFlags::DEEP);
     }
 
-    /// Recomputes a contact, and notes what is to be committed.
+    /// Recomputes a contact, and notes its results for the commit.
     fn recompute(&self, id: u32, contact: &mut Contact, count: &mut PointCount, worker: &mut WorkerBuffers) {
         let is_among = |crowd: &BitSet| contact.bodies.iter().any(|b| *b != NONE && crowd.contains(*b));
         let is_crowded = self.crowded.is_some_and(is_among);
@@ -242,8 +258,8 @@ impl<'a> ContactUpdate<'a> {
     }
 }
 
-/// Computes the manifolds of a contact at the present poses, or those of its swept shapes, and
-/// freezes it there.
+/// Computes the manifolds of a contact at the present poses or, for swept shapes, at the time of impact, and
+/// freezes the contact at these poses.
 fn recompute(
     input: &NarrowPhaseInput,
     contact: &mut Contact,
@@ -256,7 +272,7 @@ fn recompute(
     let revisions = sides.revisions();
     let is_changed = contact.revisions != revisions;
     if is_changed {
-        // The cached features may be of other shapes.
+        // The cached features may belong to other shapes.
         contact.cache = FeatureCache::NONE;
     }
     contact.revisions = revisions;
@@ -278,31 +294,31 @@ fn recompute(
     if contact.flags.any(ContactFlags::TOUCHING.union(ContactFlags::COMPOSITE)) {
         sides.set_platform(contact);
     }
-    // Only what has just come together, or was changed by hand, was placed where it is; all else was pressed
-    // there, unless its bodies are crowded by those that were placed.
+    // A contact counts as placed if it is new, was changed by hand, or has a body in a crowd of placed
+    // bodies. All other contacts were pressed into their overlap.
     sides.after_recomputing(contact, is_crowded || is_changed);
 }
 
-/// The result of looking for points, beside the points themselves.
+/// Result of a manifold search, apart from its points.
 struct Search {
-    /// Points were looked for up to this distance, or there are none up to it; margins subtracted.
+    /// Distance up to which points were searched or are known to be absent, margins subtracted.
     prediction: f32,
-    /// The time of the points, if they are those of swept shapes or of the middle of the step.
+    /// Pose of the points if not the current one: at the time of impact or in the middle of the step.
     meeting: Option<Meeting>,
-    /// There are points farther away than `prediction`, which turning may bring together in this step.
+    /// Whether there are points beyond `prediction` that turning may close in this step.
     has_far: bool,
 }
 
-/// Computes the manifolds of a pair with a foreign shape. It is not swept, but looked at as far as
-/// turning may close.
+/// Computes the manifolds of a pair with a foreign shape. The pair is not swept; the search distance includes
+/// the distance that turning may close.
 fn search_foreign(sides: &Sides, contact: &Contact, buffers: &mut WorkerBuffers) -> Search {
     let (pose, farthest) = sides.input.foreign_view(contact);
     sides.input.source.manifolds(contact.colliders, &pose, farthest, &mut buffers.local);
     Search { prediction: sides.prediction(), meeting: None, has_far: false }
 }
 
-/// Computes the manifolds of a pair with a composite shape: of the parts nearby, and of those that the step's
-/// motion meets. Parts are looked at as far as turning may close.
+/// Computes the manifolds of a pair with a composite shape: of nearby parts, and of parts that the step's
+/// motion meets. The search distance includes the distance that turning may close.
 fn search_parts(sides: &Sides, contact: &mut Contact, buffers: &mut WorkerBuffers) -> Search {
     let (prediction, margin) = (sides.prediction(), sides.margin());
     let farthest = sides.farthest(prediction);
@@ -326,8 +342,8 @@ fn search_parts(sides: &Sides, contact: &mut Contact, buffers: &mut WorkerBuffer
     Search { prediction: known, meeting: None, has_far: false }
 }
 
-/// Computes the manifold of two native shapes where they are now. If they do not touch, that of when the
-/// step's motion brings them together.
+/// Computes the manifold of two native shapes at their present poses or, if they do not touch, at their time
+/// of impact in the step.
 #[inline(always)]
 fn search_native(sides: &Sides, contact: &mut Contact, found: &mut Vec<LocalManifold>) -> Search {
     let (prediction, margin) = (sides.prediction(), sides.margin());
@@ -341,7 +357,7 @@ fn search_native(sides: &Sides, contact: &mut Contact, found: &mut Vec<LocalMani
     let farthest = sides.farthest(prediction);
     // Negated, so that a NaN is not taken for a gap.
     if !(gap > with_margin) || !(gap - margin > farthest) {
-        // What touches may slap down within the step with points that are far yet.
+        // A touching body may slap down within the step at points that are still far.
         let slaps = farthest > prediction && time_of_impact::is_straight(sides);
         let up_to = if slaps { farthest + margin } else { with_margin };
         until_lag = manifold_update::collide(sides, contact, up_to, &mut local);
@@ -374,8 +390,8 @@ fn search_native(sides: &Sides, contact: &mut Contact, found: &mut Vec<LocalMani
     Search { prediction: min(prediction, until_lag), meeting, has_far }
 }
 
-/// Freezes a contact at the present poses, or at those where its shapes meet. A contact of swept shapes is
-/// not recycled, nor a sensor's with points, which would be kept while the shapes part.
+/// Freezes a contact at the present poses, or at the poses where its shapes meet. A contact of swept shapes
+/// is not recycled. Neither is a sensor's contact with points, which would be kept while the shapes part.
 #[inline(always)]
 fn freeze(sides: &Sides, contact: &mut Contact, search: &Search, found: &[LocalManifold]) {
     contact.frozen = Frozen {

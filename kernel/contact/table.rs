@@ -2,6 +2,7 @@
 
 use super::record::{Contact, ContactFlags, LoadPoint, LostImpulse, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, Parts, Slack, prefetch};
+use crate::graph::COLOR_COUNT;
 use crate::math::DIM;
 use crate::table::{BodyKind, BodyTable, ColliderDef, ColliderTable, NONE};
 use std::collections::BTreeMap;
@@ -9,14 +10,14 @@ use std::collections::BTreeMap;
 /// All contacts.
 ///
 /// One dense array by id with the first manifold inline. Native pairs have one manifold, so a step follows no
-/// pointer and allocates nothing. Further manifolds, of composite foreign shapes, are in a side pool.
+/// pointer and allocates nothing. Further manifolds, of composite and foreign shapes, are in a side pool.
 #[derive(Clone, Debug, Default)]
 pub struct ContactTable {
     ids: IdPool,
     pub(super) contacts: Vec<Contact>,
     /// The number of points of each contact.
     pub(super) points: Vec<PointCount>,
-    /// A copy of each contact's bodies, for readers that need nothing else of the record.
+    /// A copy of each contact's bodies, for readers that need no other field of the record.
     bodies: Vec<[u32; 2]>,
     pairs: PairSet,
     /// Contacts with an awake body.
@@ -30,33 +31,42 @@ pub struct ContactTable {
     pub sum_impulses: bool,
     /// Whether the last update found a deeply overlapping contact.
     pub(crate) any_deep: bool,
-    /// The dynamic bodies that overlapped others deeply when contacts were last updated.
+    /// The dynamic bodies that overlapped other bodies deeply when contacts were last updated.
     pub(super) crowded: BitSet,
+    /// See [`full`](Self::full).
+    pub(super) full: BitSet,
+    /// The full colliders of the update before.
+    pub(super) were_full: BitSet,
+    /// By solid collider of these bodies, the number of its contacts with others of these bodies.
+    pub(super) deep_counts: BTreeMap<u32, usize>,
+    /// By collider, the number of bounded contacts that were added since the last update, and between the two
+    /// updates before: whether a new contact is deep is known only after its first update.
+    pub(super) added: [BTreeMap<u32, usize>; 2],
     pub(super) extra: Vec<Vec<Manifold>>,
     free_extra: Vec<u32>,
     /// Buffer of the narrow phase's commit; empty between updates.
     pub(super) stored: Vec<Stored>,
     /// The surfaces of changed manifolds, by contact and index.
     pub(super) surfaces: BTreeMap<(u32, u32), ManifoldSurface>,
-    /// Bodies to which the solver gave more mass in the last step, by id, and how long it lasts.
+    /// Bodies whose mass the solver raised in the last step, by id, and how long the raise lasts.
     pub(crate) raised_masses: Vec<(u32, [u8; DIM])>,
     /// Sliding colliders whose manifolds are compared; empty between updates.
     pub(super) compared: Vec<u32>,
-    /// The same as a set.
+    /// The colliders of `compared` as a set.
     pub(super) is_compared: BitSet,
     /// Colliders that slide; empty between updates.
     pub(super) sliders: BitSet,
-    /// Points under load that sliding colliders lost; empty between updates.
+    /// Loaded points that sliding colliders lost; empty between updates.
     pub(super) lost: Vec<LostImpulse>,
     /// The points of a sliding collider; empty between updates.
     pub(super) load_points: Vec<LoadPoint>,
-    /// How many contacts there are, step by step.
+    /// The number of contacts, step by step.
     slack: Slack,
     /// Whether buffers are given back in this step.
     pub(super) gives_back: bool,
 }
 
-/// Shortens a list, and gives back the storage of what it does not hold.
+/// Truncates a list and releases its unused storage.
 fn cut<T>(list: &mut Vec<T>, len: usize) {
     list.truncate(len);
     list.shrink_to_fit();
@@ -78,7 +88,8 @@ pub(crate) struct PointCount(u8);
 impl PointCount {
     const IN_RECORD: u8 = u8::MAX;
 
-    /// The points of the first manifold; `None` if there may be more manifolds, which are in the record.
+    /// The solved points of the first manifold; `None` if there may be more manifolds, which the record
+    /// lists.
     #[inline(always)]
     pub(crate) fn of_only_manifold(self) -> Option<u32> {
         (self.0 != Self::IN_RECORD).then_some(u32::from(self.0))
@@ -94,8 +105,8 @@ impl PointCount {
 }
 
 impl ContactTable {
-    /// The bytes kept of each contact, without two bits, the [`pairs`](Self::pairs), and manifolds
-    /// after the first.
+    /// The bytes stored per contact, without two bits, the [`pairs`](Self::pairs), and manifolds after the
+    /// first.
     pub const BYTES_PER_CONTACT: usize =
         size_of::<Contact>() + size_of::<PointCount>() + size_of::<[u32; 2]>();
 
@@ -183,7 +194,7 @@ impl ContactTable {
         &mut self.contacts[id as usize]
     }
 
-    /// A contact's manifold by its number, which it has.
+    /// A contact's manifold by its number, which must exist.
     #[inline(always)]
     pub(crate) fn manifold_mut(&mut self, id: u32, index: u32) -> &mut Manifold {
         let contact = &mut self.contacts[id as usize];
@@ -193,12 +204,12 @@ impl ContactTable {
         }
     }
 
-    /// The manifolds, changed by several threads at once.
+    /// A view of the manifolds for several threads.
     pub(crate) fn manifolds_view(&mut self) -> ManifoldsView<'_> {
         ManifoldsView { contacts: Parts::of(&mut self.contacts), extra: Parts::of(&mut self.extra) }
     }
 
-    /// A contact's manifold by its number, if there is one.
+    /// A contact's manifold by its number, if it exists.
     #[inline(always)]
     pub fn manifold<'a>(&'a self, contact: &'a Contact, index: u32) -> Option<&'a Manifold> {
         match index {
@@ -215,8 +226,8 @@ impl ContactTable {
         }
     }
 
-    /// Makes ids that were freed before this usable again: to be called in every step. Gives back what a
-    /// crowd needed that is gone.
+    /// Makes ids that were freed before this usable again; call it in every step. Releases storage that only
+    /// a past crowd needed.
     pub fn recycle_ids(&mut self) {
         self.ids.recycle();
         self.gives_back = self.slack.is_due(self.len());
@@ -253,7 +264,7 @@ impl ContactTable {
 
     /// Adds the contact of a pair that has none to all lists of both colliders. It is not active yet.
     pub(super) fn add(&mut self, contact: Contact, colliders: &mut ColliderTable) -> u32 {
-        // What pushes nothing has no colour, and must not change the order of what has.
+        // Inert contacts have no colour, and must not change the order of contacts with a colour.
         let id = if contact.is_inert() { self.ids.allocate_aside() } else { self.ids.allocate() };
         let [a, b] = contact.colliders;
         debug_assert!(a < b, "the lower collider comes first: {a}, {b}");
@@ -278,7 +289,6 @@ impl ContactTable {
         for side in 0..2 {
             let collider = self.contacts[id as usize].colliders[side];
             let edge = id << 1 | side as u32;
-            colliders.count_contact(collider, true);
             let first = core::mem::replace(&mut colliders[collider].first_contact, edge);
             self.contacts[id as usize].next[side] = first;
             if first != NONE {
@@ -288,27 +298,47 @@ impl ContactTable {
         id
     }
 
-    /// Whether a pair in a crowd needs no contact: one of both colliders has as many as there are colours,
-    /// and both overlap others deeply, or each other. Bodies that were placed into each other come apart
-    /// without it, and n of them have contacts in proportion to n, not n². The pair is searched again when a
-    /// collider is [relieved](ColliderTable::relieved).
-    #[inline]
-    pub fn is_superfluous(&self, pair: [u32; 2], colliders: &ColliderTable, bodies: &BodyTable) -> bool {
-        pair.into_iter().any(|id| colliders.is_full(id)) && self.is_in_crowd(pair, colliders, bodies)
+    /// Whether a pair needs no contact: both colliders are [full](Self::full). The bodies come apart by the contacts
+    /// they have.
+    #[inline(always)]
+    pub fn is_superfluous(&self, pair: [u32; 2]) -> bool {
+        pair.into_iter().all(|id| self.full.contains(id))
     }
 
-    #[inline(never)]
-    fn is_in_crowd(&self, pair: [u32; 2], colliders: &ColliderTable, bodies: &BodyTable) -> bool {
+    /// Whether a found pair gets a contact. The contacts of n bodies placed into each other grow with n, not n²: a pair
+    /// gets none if both colliders have as many as there are colours, and either overlap deeply or have
+    /// [merged cores](ColliderTable::are_cores_merged).
+    pub fn admits(&mut self, pair: [u32; 2], colliders: &ColliderTable, bodies: &BodyTable) -> bool {
         let is_free = |id: u32| {
             let ColliderDef { body, flags, .. } = &colliders[id].def;
             !flags.sensor && *body != NONE && bodies[*body].kind == BodyKind::Dynamic
         };
         let is_crowded = |id: u32| self.crowded.contains(colliders.body(id));
-        pair.into_iter().all(is_free)
-            && (pair.into_iter().all(is_crowded) || colliders.are_cores_merged(pair))
+        let is_bounded = pair.into_iter().all(is_free)
+            && (pair.into_iter().all(is_crowded) || colliders.are_cores_merged(pair));
+        if !is_bounded {
+            return true;
+        }
+        let [new, recent] = &mut self.added;
+        let count = |id: &u32| {
+            let counts = [&self.deep_counts, &*new, recent];
+            counts.into_iter().filter_map(|counts| counts.get(id)).sum::<usize>()
+        };
+        if pair.iter().all(|id| count(id) >= COLOR_COUNT) {
+            return false;
+        }
+        pair.into_iter().for_each(|id| *new.entry(id).or_insert(0) += 1);
+        true
     }
 
-    /// Removes a contact from all lists but the colours and islands, and frees its id.
+    /// Full colliders: they are solid, on dynamic bodies that overlap other bodies deeply, and touch as many such
+    /// bodies as there are colours. Also the full colliders of the update before. Pairs of these may have been left
+    /// out, and are searched again.
+    pub fn full(&self) -> impl Iterator<Item = u32> {
+        self.full.iter().chain(self.were_full.iter())
+    }
+
+    /// Removes a contact from all lists except colours and islands, and frees its id.
     pub(super) fn remove(&mut self, id: u32, colliders: &mut ColliderTable) {
         self.deactivate(id);
         self.forget_surfaces(id);
@@ -316,7 +346,6 @@ impl ContactTable {
         debug_assert_eq!(self.find(a, b), Some(id), "the pair's contact is this one");
         self.pairs.remove(a, b);
         for side in 0..2 {
-            colliders.count_contact([a, b][side], false);
             match previous[side] {
                 NONE => colliders[[a, b][side]].first_contact = next[side],
                 edge => self.contacts[(edge >> 1) as usize].next[(edge & 1) as usize] = next[side],
@@ -325,6 +354,12 @@ impl ContactTable {
                 self.contacts[(next[side] >> 1) as usize].previous[(next[side] & 1) as usize] =
                     previous[side];
             }
+        }
+        // Ids may be used again before the next update.
+        for collider in [a, b].into_iter().filter(|id| colliders[*id].first_contact == NONE) {
+            self.full.remove(collider);
+            self.were_full.remove(collider);
+            self.deep_counts.remove(&collider);
         }
         if extra != NONE {
             self.extra[extra as usize].clear();
@@ -336,7 +371,7 @@ impl ContactTable {
     pub(super) fn activate(&mut self, id: u32) {
         debug_assert!(self.is_live(id), "contact {id} is in use");
         self.active_count += usize::from(self.active.insert(id));
-        // Bodies have travelled meanwhile, perhaps around the whole count.
+        // The bodies have travelled meanwhile, and the travel may have wrapped around.
         self.contacts[id as usize].flags.set(ContactFlags::CALM, false);
     }
 
@@ -362,7 +397,7 @@ impl ContactTable {
     ///
     /// # Panics
     ///
-    /// With the invariant that does not hold.
+    /// If an invariant does not hold; the message names it.
     pub fn validate(&self, colliders: &ColliderTable) {
         assert_eq!(self.active.count(), self.active_count, "active contacts are counted");
         assert!(self.active.iter().all(|id| self.is_live(id)), "an active contact is live");
@@ -412,7 +447,7 @@ impl ManifoldsView<'_> {
     /// A contact's manifold by its number, which must exist.
     ///
     /// # Safety
-    /// While the manifold is in use no other thread may take one of the same contact.
+    /// While the manifold is in use no other thread may take a manifold of the same contact.
     #[inline(always)]
     #[expect(clippy::mut_from_ref, reason = "that is what it is for")]
     pub(crate) unsafe fn manifold(&self, id: u32, index: u32) -> &mut Manifold {
@@ -426,8 +461,8 @@ impl ManifoldsView<'_> {
         }
     }
 
-    /// The same at the end of a step, and whether its separations are to be set to those of now, as the next
-    /// update may keep them.
+    /// As [`manifold`](Self::manifold), at the end of a step. Also returns whether the present separations
+    /// must be stored, because the next update may skip the contact.
     ///
     /// # Safety
     /// As [`manifold`](Self::manifold).

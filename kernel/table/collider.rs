@@ -3,7 +3,6 @@
 
 use super::{BodyKind, BodyTable, FacetMaterials, Material, NONE};
 use crate::data::{BitSet, IdPool, Parts, prefetch};
-use crate::graph::COLOR_COUNT;
 use crate::math::{Pose, Rot, Vector, WorldPose, max, min};
 use crate::shape::{Aabb, Shape};
 use crate::thread_pool::ThreadPool;
@@ -108,8 +107,6 @@ pub struct Collider {
     pub first_contact: u32,
     /// Leaf in the tree, or [`NONE`].
     pub proxy: u32,
-    /// Number of contacts.
-    contact_count: u32,
     /// Neighbours in the list of the body's colliders.
     next: u32,
     previous: u32,
@@ -179,11 +176,6 @@ pub struct ColliderTable {
     pub fat: Vec<Aabb>,
     /// Reaches by id.
     pub reaches: Vec<Reach>,
-    /// Number of colliders that have [`COLOR_COUNT`] contacts or more.
-    full: u32,
-    /// Colliders that had this many contacts, and have fewer now. Their pairs may have been left out as
-    /// [superfluous](crate::contact::ContactTable::is_superfluous), and must be searched again.
-    pub relieved: BitSet,
     /// The sizes by body, as far as bodies had colliders. Removed colliders count until the last collider of
     /// the body is removed.
     sizes: Vec<BodySize>,
@@ -212,8 +204,7 @@ impl ColliderTable {
     pub fn add(&mut self, def: ColliderDef, pose: WorldPose, bodies: &mut BodyTable) -> u32 {
         let is_sensor = def.flags.sensor;
         let id = if is_sensor { self.ids.allocate_aside() } else { self.ids.allocate() };
-        let collider =
-            Collider { def, first_contact: NONE, proxy: NONE, contact_count: 0, next: NONE, previous: NONE };
+        let collider = Collider { def, first_contact: NONE, proxy: NONE, next: NONE, previous: NONE };
         let i = id as usize;
         if i == self.colliders.len() {
             self.colliders.push(collider);
@@ -239,7 +230,6 @@ impl ColliderTable {
     /// Detaches a collider from its body and frees its id. Its contacts and its leaf must be removed before.
     pub fn remove(&mut self, id: u32, bodies: &mut BodyTable) {
         debug_assert!(self[id].first_contact == NONE, "a removed collider has no contacts");
-        self.relieved.remove(id);
         self.detach(id, bodies);
         self.ids.free(id);
         let number = core::mem::replace(&mut self.numbers[id as usize], NONE);
@@ -332,26 +322,6 @@ impl ColliderTable {
     #[inline(always)]
     pub fn body(&self, id: u32) -> u32 {
         self.owners[id as usize]
-    }
-
-    /// Counts a contact that a collider gained or lost.
-    pub(crate) fn count_contact(&mut self, id: u32, is_new: bool) {
-        let count = &mut self[id].contact_count;
-        let before = core::mem::replace(count, if is_new { *count + 1 } else { *count - 1 });
-        match (before as usize + 1, before as usize) {
-            (COLOR_COUNT, _) if is_new => self.full += 1,
-            (_, COLOR_COUNT) if !is_new => {
-                self.full -= 1;
-                self.relieved.insert(id);
-            }
-            _ => {}
-        }
-    }
-
-    /// Whether a collider has [`COLOR_COUNT`] contacts or more.
-    #[inline(always)]
-    pub fn is_full(&self, id: u32) -> bool {
-        self.full > 0 && self[id].contact_count as usize >= COLOR_COUNT
     }
 
     /// Whether the [core](Shape::core) of each of two convex shapes contains the centre of the other core.
