@@ -1,4 +1,4 @@
-//! Components written by whole tables, in pieces that workers take.
+//! Writes components by whole tables, in pieces that workers take.
 
 use bevy_ecs::change_detection::{ContiguousComponentTicksMut, ContiguousMut, MaybeLocation, Mut, Tick};
 use bevy_ecs::prelude::DetectChangesMut;
@@ -12,7 +12,7 @@ pub(crate) fn pieces(rows: usize) -> impl Iterator<Item = Range<usize>> {
     (0..rows).step_by(PIECE).map(move |start| start..(start + PIECE).min(rows))
 }
 
-/// Whether Bevy records the location of changes (feature `track_location`). Pieces cannot record it, so
+/// Whether Bevy records the location of changes (feature `track_location`). Pieces cannot record it, and
 /// components are then written one by one.
 pub(crate) fn is_change_tracked() -> bool {
     MaybeLocation::caller().into_option().is_some()
@@ -36,14 +36,14 @@ impl<'a, T> Column<'a, T> {
         Self { values, changed: ticks.insert(all).changed_mut(), now }
     }
 
-    /// Splits off the first [`PIECE`] rows, or all.
+    /// Splits off the first [`PIECE`] rows, or all rows if there are fewer.
     pub(crate) fn cut(&mut self) -> Self {
         let count = PIECE.min(self.values.len());
         let (values, changed) = (self.values.split_off_mut(..count), self.changed.split_off_mut(..count));
         Self { values: values.unwrap_or_default(), changed: changed.unwrap_or_default(), now: self.now }
     }
 
-    /// One row. Panics for a row beyond the last.
+    /// The slot of a row. Panics for a row beyond the last.
     #[inline(always)]
     pub(crate) fn slot(&mut self, row: usize) -> Slot<'_, T> {
         Slot { value: &mut self.values[row], changed: &mut self.changed[row], now: self.now }
@@ -78,9 +78,9 @@ impl<T> Slot<'_, T> {
     }
 }
 
-/// A place that a component is written to.
+/// A component that can be written, in a column or by itself.
 pub(crate) trait Put<T> {
-    /// Writes a value that differs, and marks it as changed.
+    /// Writes a value if it differs, and marks the component as changed.
     fn put(self, value: T);
 }
 

@@ -1,13 +1,13 @@
 //! Rigid-body physics for [Bevy](https://bevy.org), in two dimensions (`avian2d`) and three (`avian3d`).
 //!
-//! The API is that of Avian: bodies, shapes and settings are components and resources, and each stage of a
+//! It has the API of Avian: bodies, shapes and settings are components and resources, and each stage of a
 //! step is a plugin that can be configured, disabled or replaced. Inside is a dense, wide and deterministic
 //! solver with soft contacts and substeps.
 //!
 //! # Quick start
 //!
 //! Add [`PhysicsPlugins`] to the app, give an entity a [`RigidBody`](prelude::RigidBody) and a `Collider`,
-//! and it falls. `PhysicsDebugPlugin` draws what there is as lines. In 3D:
+//! and it falls. `PhysicsDebugPlugin` draws colliders as lines. In 3D:
 //!
 //! ```ignore
 //! use avian3d::prelude::*;
@@ -44,8 +44,8 @@
 //! }
 //! ```
 //!
-//! Without optimisation physics is slow: 200 boxes take 38 ms a frame, in release 0.3. In the `Cargo.toml` of
-//! your workspace:
+//! Without compiler optimisation physics is slow: 200 boxes take 38 ms per frame, in release builds 0.3 ms.
+//! In the `Cargo.toml` of your workspace:
 //!
 //! ```toml
 //! [profile.dev.package."*"]
@@ -81,7 +81,7 @@
 //! }
 //! ```
 //!
-//! # What to use for what
+//! # Finding the right type
 //!
 //! | I want to | look at |
 //! |---|---|
@@ -128,17 +128,17 @@
 //! | colliders and queries | `ray_caster`, `custom_collider`, `custom_constraint` | `collider_constructors`, `spatial_queries`, `custom_broad_phase`, `custom_constraint` |
 //! | tools | `step_times` | `debug_drawing`, `diagnostics` |
 //!
-//! # When it runs
+//! # When physics runs
 //!
 //! Physics takes one step per run of the schedule given to [`PhysicsPlugins::new`], by default
-//! `FixedPostUpdate`: 64 times a second at any frame rate. [`schedule::PhysicsSystems`] are its place in that
-//! schedule, [`schedule::PhysicsStepSystems`] the stages of a step, and [`Time<Physics>`](schedule::Physics)
-//! is its clock.
+//! `FixedPostUpdate`: 64 times a second at any frame rate. [`schedule::PhysicsSystems`] are its system sets
+//! in that schedule, [`schedule::PhysicsStepSystems`] are the stages of a step, and
+//! [`Time<Physics>`](schedule::Physics) is its clock.
 //!
 //! # Units
 //!
 //! Metres, seconds, kilograms and radians. If a metre is 100 pixels in your game, set
-//! [`PhysicsPlugins::with_length_unit`] to 100, and [`Gravity`](prelude::Gravity) to 981.
+//! [`PhysicsPlugins::with_length_unit`] to 100 and [`Gravity`](prelude::Gravity) to 981.
 //!
 //! # Features
 //!

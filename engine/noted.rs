@@ -1,20 +1,20 @@
 //! A queue of entities without duplicates.
 //!
-//! Observers fill such queues also while physics is paused, for any time. A queue therefore holds one entry
-//! per entity index: an entity replaces the entry of a despawned one with the same index. So a queue is never
-//! longer than the largest number of entities alive at one time.
+//! Observers fill these queues even while physics is paused, for an unlimited time. Therefore a queue holds
+//! one entry per entity index: an entity replaces the entry of a despawned entity with the same index. The
+//! queue is never longer than the largest number of entities alive at one time.
 
 use bevy_ecs::entity::Entity;
 
-/// No place in the order.
+/// An index without an entry.
 const NOWHERE: u32 = u32::MAX;
 
 /// Queues with fewer entries than this are not compacted.
 const SMALL: usize = 64;
 
-/// Entities in the order in which they were first queued, each with the value that was queued last.
+/// Entities in the order in which they were first queued, each with its last queued value.
 ///
-/// An `EntityIndexSet` does not serve: its hash uses the index only, so the many generations of one index in
+/// An `EntityIndexSet` is not suitable: its hash uses only the index, so the many generations of one index in
 /// an app with paused physics would all collide.
 #[derive(Clone, Debug)]
 pub(crate) struct Noted<T = ()> {
@@ -88,7 +88,7 @@ impl<T> Noted<T> {
         self.order.iter().flatten().map(|(entity, _)| *entity)
     }
 
-    /// Empties the queue.
+    /// Empties the queue and iterates over its entries.
     pub(crate) fn drain(&mut self) -> impl Iterator<Item = (Entity, T)> + '_ {
         for (entity, _) in self.order.iter().flatten() {
             self.places[entity.index_u32() as usize] = NOWHERE;
@@ -102,14 +102,14 @@ impl Noted {
     /// Queues an entity. Returns the despawned entity whose entry it replaces.
     #[inline]
     pub(crate) fn note(&mut self, entity: Entity) -> Option<Entity> {
-        // Observers of one entity's components run one after the other.
+        // Observers of one entity's components run one after the other, so repeats are adjacent.
         if self.order.last() == Some(&Some((entity, ()))) {
             return None;
         }
         self.put(entity, ())
     }
 
-    /// Queues entities in turn.
+    /// Queues entities in order.
     pub(crate) fn extend(&mut self, entities: impl IntoIterator<Item = Entity>) {
         entities.into_iter().for_each(|entity| _ = self.note(entity));
     }
@@ -132,7 +132,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against a list with linear search.
+        /// Compares the queue with a list with linear search.
         #[test]
         fn each_index_is_noted_once_in_order(
             notes in prop::collection::vec((0..200u32, 0..4u32, any::<u16>(), 0..400u32), 0..3000),

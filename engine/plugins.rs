@@ -1,4 +1,4 @@
-//! [`PhysicsPlugins`]: all plugins of the engine, in the order they are added.
+//! [`PhysicsPlugins`]: all plugins of the engine, in the order in which they are added.
 
 use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::{intern::Interned, schedule::ScheduleLabel, system::SystemParamItem};
@@ -56,7 +56,7 @@ use crate::{
 /// | [`PhysicsTransformPlugin`] | `Transform` to `Position` and `Rotation`, and back |
 /// | [`PhysicsInterpolationPlugin`] | smooth transforms between steps, for those who ask |
 ///
-/// Those for `Collider` need feature `default-collider`, the cache `collider-from-mesh` too.
+/// Plugins for `Collider` need feature `default-collider`, and the cache also needs `collider-from-mesh`.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -75,20 +75,20 @@ pub struct PhysicsPlugins {
 }
 
 impl PhysicsPlugins {
-    /// Physics hosted in `schedule`: each run takes one step, by the delta of `Time`. The default is
+    /// Hosts physics in `schedule`: each run takes one step, by the delta of `Time`. The default is
     /// [`FixedPostUpdate`].
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern(), length_unit: None }
     }
 
-    /// Sets [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit): roughly the length of a metre
-    /// in units of the app. An invalid length counts as 1, with a warning.
+    /// Sets [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit), the approximate length of a
+    /// metre in units of the app. An invalid length counts as 1, with a warning.
     pub fn with_length_unit(mut self, unit: Scalar) -> Self {
         self.length_unit = Some(unit);
         self
     }
 
-    /// Adds [`CollisionHooks`] of the app.
+    /// Adds the app's [`CollisionHooks`].
     pub fn with_collision_hooks<H: CollisionHooks + 'static>(self) -> PhysicsPluginsWithHooks<H>
     where
         for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
@@ -96,7 +96,7 @@ impl PhysicsPlugins {
         PhysicsPluginsWithHooks { plugins: self, hooks: PhantomData }
     }
 
-    /// The plugins in their order.
+    /// The plugins, in order.
     fn group<G: PluginGroup, H: CollisionHooks + 'static>(self) -> PluginGroupBuilder
     where
         for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
@@ -145,19 +145,19 @@ impl PluginGroup for PhysicsPlugins {
     }
 }
 
-/// [`PhysicsPlugins`] with the [`CollisionHooks`] of the app.
+/// [`PhysicsPlugins`] with the app's [`CollisionHooks`].
 pub struct PhysicsPluginsWithHooks<H: CollisionHooks> {
     plugins: PhysicsPlugins,
     hooks: PhantomData<fn() -> H>,
 }
 
 impl<H: CollisionHooks> PhysicsPluginsWithHooks<H> {
-    /// Physics hosted in `schedule`, as [`PhysicsPlugins::new`].
+    /// Hosts physics in `schedule`, like [`PhysicsPlugins::new`].
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { plugins: PhysicsPlugins::new(schedule), hooks: PhantomData }
     }
 
-    /// Sets the length of a metre, as [`PhysicsPlugins::with_length_unit`].
+    /// Sets the length of a metre, like [`PhysicsPlugins::with_length_unit`].
     pub fn with_length_unit(self, unit: Scalar) -> Self {
         Self { plugins: self.plugins.with_length_unit(unit), ..self }
     }

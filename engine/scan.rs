@@ -1,17 +1,17 @@
-//! Scans for changes over all entities with a component: by tables, reading change ticks only.
+//! Scans all entities with a component for changes, by tables, reading only change ticks.
 
 use bevy_ecs::{change_detection::Tick, system::SystemChangeTick};
 
-/// Why a query can iterate over tables.
+/// The reason why a query can iterate over tables.
 pub(crate) const IN_TABLES: &str = "components of the engine are stored in tables";
 
-/// Maximum age of a tick. Older ticks get this age, so that ages compare although ticks wrap around.
+/// Maximum age of a tick. Older ticks get this age, which makes ages comparable although ticks wrap around.
 const MAX_AGE: u32 = Tick::MAX.get();
 
-/// The condition for changes: after a tick.
+/// A filter for changes after a tick.
 ///
-/// A change is new if its age is below a limit. Both are stored with the sign bit flipped: unsigned order
-/// then equals signed order, for which every CPU has SIMD comparisons.
+/// A change is new if its age is below a limit. Both are stored with the sign bit flipped: then unsigned
+/// order equals signed order, for which every CPU has SIMD comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Since {
     now: u32,
@@ -37,16 +37,16 @@ impl Since {
         Self::new(system.last_run(), system)
     }
 
-    /// As [`Tick::is_newer_than`], without branches.
+    /// Like [`Tick::is_newer_than`], without branches.
     #[inline(always)]
     pub(crate) fn is_new(self, tick: Tick) -> bool {
         (self.now.wrapping_sub(tick.get()) as i32) < self.age
     }
 
-    /// Calls `found` with each row at which any of the columns is new.
+    /// Calls `found` with each row where any of the columns is new.
     ///
-    /// Most rows are not new, so stretches of rows are first tested as a whole, in a loop that the
-    /// compiler vectorises.
+    /// Most rows are not new, so stretches of rows are first tested as a whole, in a loop that the compiler
+    /// vectorises.
     pub(crate) fn rows<const N: usize>(self, columns: [&[Tick]; N], mut found: impl FnMut(usize)) {
         let count = columns.iter().map(|column| column.len()).min().unwrap_or(0);
         for start in (0..count).step_by(STRETCH) {

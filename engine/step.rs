@@ -1,8 +1,8 @@
-//! The step: every system of the engine in [`PhysicsSchedule`], in the order it runs.
+//! The step: every system of the engine in [`PhysicsSchedule`], in the order in which it runs.
 //!
-//! One list names each stage, its public set, its systems, and the plugin that adds each system. Order and
-//! registration both come from it. A second list names the systems of a substep ([`add_substep_systems_of`]).
-//! Disabling a plugin takes its systems out.
+//! One list names each stage, its public set, its systems, and the plugin that adds each system. It
+//! determines both order and registration. A second list names the systems of a substep
+//! ([`add_substep_systems_of`]). Disabling a plugin removes its systems.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{intern::Interned, prelude::*, schedule::ScheduleLabel, system::ScheduleSystem};
@@ -72,7 +72,7 @@ use crate::{
     threads::Threads,
 };
 
-/// Makes the stages from the list below. An entry is `Name .place(set) => { Owner: systems, … }`: a stage,
+/// Defines the stages from the list below. An entry is `Name .place(set) => { Owner: systems, … }`: a stage,
 /// its public set, and its systems by the plugin that adds them.
 macro_rules! stages {
     ($(
@@ -97,7 +97,8 @@ macro_rules! stages {
             };
         }
 
-        /// Adds the systems of an owner to [`PhysicsSchedule`] or one that replaces it, each in its stage.
+        /// Adds the systems of an owner to [`PhysicsSchedule`] or a schedule that replaces it, each in its
+        /// stage.
         pub(crate) fn add_systems_of(owner: Owner, app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
             $($(
                 if owner == Owner::$owner {
@@ -109,7 +110,7 @@ macro_rules! stages {
     };
 }
 
-/// The plugin that adds a system. Without the plugin the system does not run.
+/// The plugin that adds a system. Without this plugin the system does not run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Owner {
     /// Any plugin of the step.
@@ -205,11 +206,11 @@ stages! {
     Gather.in_set(SolverSystems::PrepareSolverBodies) => {
         SolverBodies: ((wake_kinematic_late, gather_bodies).chain(), lend_bodies).chain_ignore_deferred(),
     }
-    /// Makes room for the displacements of bodies by constraints. Systems: `XpbdSolverPlugin`.
+    /// Adds components for the displacements of bodies by constraints. Systems: `XpbdSolverPlugin`.
     PreparePositionSolve.in_set(SolverSystems::PrepareSolverBodies) => {}
     /// Adds forces to the rows of awake bodies.
     ApplyForces.in_set(ForceSystems::ApplyConstantForces) => { Forces: apply_forces }
-    /// Computes the parameters of the substeps, also for bodies without contacts.
+    /// Computes the parameters of the substeps, even for bodies without contacts.
     PrepareParams.in_set(SolverSystems::PrepareJoints) => { SolverSchedule: prepare_params }
     /// Builds the rows of touching contacts.
     PrepareRows.in_set(SolverSystems::PrepareContactConstraints) => { Solver: prepare_rows }
@@ -217,26 +218,26 @@ stages! {
     Substeps.in_set(SolverSystems::Substep) => { SolverSchedule: run_substeps }
     /// Ends the forces of this step.
     ClearForces.in_set(ForceSystems::Clear) => { Forces: clear_forces }
-    /// Takes over what the app did to bodies after the substeps.
+    /// Takes over the app's changes of bodies after the substeps.
     TakeBack.after(SolverSystems::PostSubstep).before(SweptCcdSystems) => { SolverBodies: take_back }
-    /// Puts bodies back that got into something.
+    /// Moves bodies that penetrated an obstacle back to the time of impact.
     Sweep.in_set(SweptCcdSystems) => { Ccd: sweep_bodies }
     /// Applies restitution.
     Restitution.in_set(SolverSystems::Restitution) => { Solver: apply_restitution }
-    /// Adds the displacement in the substeps to the poses. One system, so that no system of the
-    /// app runs within.
+    /// Adds the displacement in the substeps to the poses. One system, so no system of the app runs in
+    /// between.
     FinishBodies.in_set(SolverSystems::Finalize) => { SolverBodies: note_moved_within.pipe(finish_bodies) }
-    /// Writes poses and velocities to components. One system, so that no system of the app runs within.
+    /// Writes poses and velocities to components. One system, so no system of the app runs in between.
     Scatter.in_set(SolverSystems::Finalize) => {
         SolverBodies: note_moved_late.pipe(scatter_bodies).pipe(keep_moved_within),
     }
-    /// Writes poses to transforms. From here on, a transform that the app sets is newer than the step.
+    /// Writes poses to transforms. After this stage, a transform that the app sets is newer than the step.
     WriteTransforms.in_set(SolverSystems::Finalize) => { Transforms: position_to_transform }
     /// Stores impulses in the manifolds.
     StoreImpulses.in_set(SolverSystems::StoreContactImpulses) => {
         Solver: (store_impulses, find_hits).chain(),
     }
-    /// Finds the contacts that began to touch.
+    /// Finds contacts that began to touch.
     NoteTouching.in_set(SolverSystems::StoreContactImpulses) => {
         NarrowPhase: (note_touching.pipe(forget_views), fill_graph).chain(),
     }
@@ -259,16 +260,17 @@ stages! {
     }
     /// Updates [`Sleeping`](crate::dynamics::rigid_body::sleeping::Sleeping) components.
     MirrorSleep.in_set(PhysicsStepSystems::Finalize) => { Sleeping: mirror_sleeping }
-    /// Takes [`SolverBody`](crate::dynamics::solver::solver_body::SolverBody) from bodies that fell
-    /// asleep or left.
+    /// Removes [`SolverBody`](crate::dynamics::solver::solver_body::SolverBody) from bodies that fell asleep
+    /// or left.
     EndLending.in_set(PhysicsStepSystems::Finalize) => { SolverBodies: end_lending }
 }
 
-/// Adds systems of the engine to [`PhysicsSchedule`] or one that replaces it.
+/// Adds systems of the engine to [`PhysicsSchedule`] or a schedule that replaces it.
 ///
-/// Stages fix the order of the engine's systems, and systems of one stage are chained or share no data. The
-/// order relative to the app's systems in the public sets is open, and that is no error: such a system reads
-/// data from before or after a stage of its set, and its writes take effect where they are read next.
+/// Stages determine the order of the engine's systems, and systems of one stage are chained or share no data.
+/// The order relative to the app's systems in the public sets is ambiguous without being an error: such a
+/// system reads data from before or after a stage of its set, and its writes take effect where they are next
+/// read.
 pub(crate) fn add_systems<M>(
     app: &mut App,
     schedule: impl ScheduleLabel,
@@ -329,15 +331,15 @@ pub(crate) fn install(app: &mut App) {
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Timers;
 
-/// Adds a plugin that all instances of a generic plugin share, with the first of them.
+/// Adds a plugin that all instances of a generic plugin share. Only the first instance adds it.
 pub(crate) fn add_once<P: Plugin>(app: &mut App, shared: P) {
     if !app.is_plugin_added::<P>() {
         app.add_plugins(shared);
     }
 }
 
-/// Adds the substep systems of an owner to [`SubstepSchedule`] or one that replaces it, each in
-/// its public set.
+/// Adds the substep systems of an owner to [`SubstepSchedule`] or a schedule that replaces it, each in its
+/// public set.
 ///
 /// [`SubstepSchedule`]: crate::dynamics::solver::schedule::SubstepSchedule
 pub(crate) fn add_substep_systems_of(owner: Owner, app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
@@ -353,7 +355,7 @@ pub(crate) fn add_substep_systems_of(owner: Owner, app: &mut App, schedule: Inte
     substep.add(Solver, Relax, relax_contacts);
 }
 
-/// The schedule to which the substep systems of one owner are added.
+/// The schedule that receives the substep systems of one owner.
 struct Substep<'a> {
     owner: Owner,
     app: &'a mut App,
@@ -361,7 +363,7 @@ struct Substep<'a> {
 }
 
 impl Substep<'_> {
-    /// Adds a system in a public set, if it belongs to the owner.
+    /// Adds a system to a public set, if it belongs to the owner.
     fn add<M>(&mut self, owner: Owner, set: impl SystemSet, system: impl IntoSystem<(), (), M> + Copy) {
         if self.owner != owner {
             return;
@@ -377,7 +379,7 @@ impl Substep<'_> {
 }
 
 #[cfg(test)]
-/// Enables checks for ambiguities with the engine's systems, in spite of [`add_systems`].
+/// Enables checks for ambiguities with the engine's systems, which [`add_systems`] otherwise disables.
 #[derive(Resource)]
 struct Strict;
 
@@ -389,8 +391,8 @@ mod tests {
     use bevy_ecs::schedule::{ApplyDeferred, InternedSystemSet};
     use core::any::TypeId;
 
-    /// Every system of the step runs in a stage or after one, stages run in the order of the list, and
-    /// none is empty.
+    /// Every system of the step runs in a stage or after a stage, stages run in the order of the list, and no
+    /// stage is empty.
     #[test]
     fn every_system_of_the_step_is_in_one_stage_and_stages_run_in_order() {
         let mut app = App::new();
@@ -426,7 +428,7 @@ mod tests {
         });
     }
 
-    /// Both schedules fail to build where an order is not determined.
+    /// Both schedules fail to build if any order is not determined.
     #[test]
     fn stages_determine_the_order_of_the_engines_systems() {
         let mut app = App::new();

@@ -1,11 +1,11 @@
 //! Type paths of the engine's types in scenes and other files.
 //!
-//! A reflected type is named by the path of its module. Where a file here is at another path than Avian's
-//! module, the type has Avian's path, so that files written for Avian still name it.
+//! A reflected type is named by its module path. If a file here is at another path than Avian's module, the
+//! type has Avian's path. Files written for Avian then still name it.
 
-/// Implements `TypePath` for a type with another module path than its file.
+/// Implements `TypePath` for a type whose module path differs from its file.
 ///
-/// The type derives `Reflect` with `#[reflect(type_path = false)]`. The module is given without the crate's
+/// The type derives `Reflect` with `#[reflect(type_path = false)]`. The module is given without the crate
 /// name, which differs between the dimensions.
 macro_rules! type_path {
     ($type:ident, $module:literal) => {

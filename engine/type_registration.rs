@@ -1,14 +1,14 @@
-//! Reflection: every public component and resource of the engine is registered, by name.
+//! Reflection: registers every public component and resource of the engine by name.
 
 use bevy_app::{App, Plugin};
 
 /// Registers the engine's components, resources and nested types for reflection, whether or not the app
 /// registers types automatically.
 ///
-/// Scenes, inspectors and remote tools need it; the simulation does not.
+/// Scenes, inspectors and remote tools need it. The simulation does not.
 pub struct PhysicsTypeRegistrationPlugin;
 
-/// `app.register_type` for each of a list of types.
+/// Calls `app.register_type` for each type of a list.
 macro_rules! register {
     ($app:ident: $($type:ty),* $(,)?) => {
         $( $app.register_type::<$type>(); )*

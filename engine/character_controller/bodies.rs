@@ -1,4 +1,4 @@
-//! The bodies around characters: how they move in the step to come.
+//! The bodies around characters, and their motion in the coming step.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 
@@ -13,12 +13,12 @@ use crate::{
     physics_transform::{Position, Rotation, pose_from_kernel, world_pose},
 };
 
-/// The load in N, of a mass under gravity, that a body bears after another step, in which it gave
-/// way by a speed.
+/// The load in N, of a mass under gravity, that a body bears after another step in which it yielded by a
+/// speed.
 ///
-/// How much it bears is not known, and the whole weight at once would throw a light limb that lies on
-/// nothing. So each step adds what accelerates the mass and the body together by gravity, at least `growth`
-/// times the load, and takes off what made the body give way.
+/// The load that the body can bear is not known, and the whole weight at once would throw a light limb that
+/// lies on nothing. So each step adds the force that accelerates the mass and the body together by gravity,
+/// at least `growth` times the load, and subtracts the force that made the body yield.
 pub(super) fn borne(
     load: Scalar,
     yielded: Scalar,
@@ -31,7 +31,7 @@ pub(super) fn borne(
     (load + more).min(mass * gravity).max(0.0)
 }
 
-/// The bodies, and the colliders that belong to them.
+/// The bodies and their colliders.
 #[derive(SystemParam)]
 pub(super) struct BodiesAround<'w, 's> {
     states: Query<'w, 's, RigidBodyQueryReadOnly, Without<RigidBodyDisabled>>,
@@ -69,7 +69,7 @@ impl BodiesAround<'_, '_> {
         self.colliders.get(body).into_iter().flat_map(|colliders| colliders.iter())
     }
 
-    /// The motion of a body in the next step; `None` for what is no body.
+    /// The motion of a body in the next step; `None` if the entity is not a body.
     pub(super) fn motion_of(&self, body: Entity, time: Scalar) -> Option<Motion> {
         let state = self.states.get(body).ok()?;
         let moves = !state.rb.is_static();
@@ -85,7 +85,7 @@ impl BodiesAround<'_, '_> {
         })
     }
 
-    /// The inverse of the mass that a body has at a point along a direction, in 1/kg: zero for those that
+    /// The inverse effective mass of a body at a point along a direction, in 1/kg: zero for bodies that
     /// impulses do not move.
     pub(super) fn inverse_mass_at(&self, body: Entity, point: Vector, direction: Vector) -> Scalar {
         let Ok(state) = self.states.get(body) else { return 0.0 };
@@ -101,14 +101,14 @@ impl BodiesAround<'_, '_> {
         self.surfaces.get(collider).map_or(Vector::ZERO, |(rotation, surface)| *rotation * surface.0)
     }
 
-    /// The kinematic bodies other than characters that move in the next step.
+    /// The kinematic bodies that move in the next step, without characters.
     pub(super) fn pushers(&self, time: Scalar) -> Vec<Motion> {
         let moving = self.movers.iter().filter_map(|body| self.motion_of(body, time));
         moving.filter(|body| body.kind.is_kinematic() && body.is_moving()).collect()
     }
 }
 
-/// A body in the next step, if nothing changes its velocity.
+/// The motion of a body in the next step, if its velocity does not change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pub(super) kind: RigidBody,
@@ -122,13 +122,12 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Whether it moves in the step.
+    /// Whether the body moves in the step.
     pub(super) fn is_moving(&self) -> bool {
         self.velocity != Vector::ZERO || self.spin != AngularVelocity::ZERO.0
     }
 
-    /// The greatest distance by which a point at most as far from the body's centre as `point`
-    /// moves in the step.
+    /// The maximum displacement in the step of points at most as far from the body's centre as `point`.
     pub(super) fn reach_at(&self, point: Vector) -> Scalar {
         let spin: Scalar = angular_to_kernel(self.spin).length_squared().sqrt().adjust_precision();
         (self.velocity.length() + spin * (point - self.center).length()) * self.time
@@ -140,7 +139,7 @@ impl Motion {
         self.velocity + vector_from_kernel(angular_to_kernel(self.spin).cross(arm))
     }
 
-    /// Where the body is after the step.
+    /// The pose of the body after the step.
     pub(super) fn end(&self) -> (Position, Rotation) {
         if !self.is_moving() {
             return (self.position, self.rotation);

@@ -13,11 +13,11 @@ use crate::{
     spatial_query::SpatialQueryFilter,
 };
 
-/// A character that walks: on floors, slopes and stairs, on platforms that move and turn.
+/// A character that walks on floors, slopes and stairs, and on platforms that move and turn.
 ///
 /// Add it to an entity with a capsule, a cylinder, a box or another convex
 /// [`Collider`](crate::prelude::Collider). The body is kinematic. Each step reads [`CharacterInput`], and
-/// sets the velocity of the body so that the step moves it there. What became of it is in [`CharacterState`].
+/// sets the velocity of the body to the motion of the character. The result is in [`CharacterState`].
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -51,33 +51,32 @@ use crate::{
 #[reflect(Debug, Component, Default, PartialEq)]
 #[require(RigidBody::Kinematic, CharacterInput, CharacterState)]
 pub struct CharacterController {
-    /// The direction against which the character stands. It may change at any time, as on a planet.
-    /// +y by default.
+    /// The upward direction of the character. It may change at any time, as on a planet. +y by default.
     pub up: Dir,
-    /// The steepest slope that it walks on, in radians. 50 degrees by default.
+    /// The steepest slope that the character walks on, in radians. 50 degrees by default.
     pub max_slope: Scalar,
-    /// The highest step that it climbs, in metres, as all lengths here scaled by
+    /// The highest step that the character climbs, in metres, as all lengths here scaled by
     /// [`PhysicsLengthUnit`](crate::prelude::PhysicsLengthUnit). 0.4 by default, 0 for none.
     pub step_height: Scalar,
-    /// The way that must be free above a step for it to be climbed, in metres. 0.1 by default.
+    /// The depth of free space needed above a step to climb it, in metres. 0.1 by default.
     pub step_depth: Scalar,
-    /// How far below its feet the floor may drop away without the character leaving it, in metres. 0.4 by
-    /// default. Slopes up to [`max_slope`](Self::max_slope) are followed at any speed.
+    /// How far the floor may drop below the feet without the character leaving it, in metres. 0.4 by default.
+    /// Slopes up to [`max_slope`](Self::max_slope) are followed at any speed.
     pub snap_distance: Scalar,
     /// The distance kept from all colliders, in metres. 0.01 by default.
     pub skin_width: Scalar,
-    /// Its mass in kg, by which it pushes and weighs on dynamic bodies, and slides on light ones that jerk.
-    /// 70 by default.
+    /// The mass in kg with which the character pushes and weighs on dynamic bodies. It also determines how
+    /// much the character slides on light bodies that jerk. 70 by default.
     pub mass: Scalar,
-    /// The largest force by which it pushes dynamic bodies, in N. 500 by default, 0 for none.
+    /// The largest force with which the character pushes dynamic bodies, in N. 500 by default, 0 for none.
     pub max_push_force: Scalar,
-    /// What the character collides with. Its own colliders need not be excluded.
+    /// The colliders that stop the character. Its own colliders need not be excluded.
     pub filter: SpatialQueryFilter,
-    /// The layers of its friends: other characters that do not stop it. Those that overlap yield to each
-    /// other, each by half of the way. None by default.
+    /// The layers of friends: other characters that do not stop this one. Overlapping friends yield to each
+    /// other, each by half of the overlap. None by default.
     pub friends: LayerMask,
-    /// The speed at which it yields to friends, in m/s. Slower than half of its own speed, or
-    /// friends push each other along instead of passing. 0.5 by default.
+    /// The speed at which the character yields to friends, in m/s. It should be less than half of the walking
+    /// speed, or friends push each other along instead of passing. 0.5 by default.
     pub yield_speed: Scalar,
 }
 
@@ -99,81 +98,82 @@ impl Default for CharacterController {
     }
 }
 
-/// What a character is to do.
+/// The input of a character.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default, PartialEq)]
 pub struct CharacterInput {
-    /// The velocity at which it is to walk, relative to the ground, in m/s. The part along
-    /// [`up`](CharacterController::up) has no effect: slopes and stairs are walked at this horizontal speed.
-    /// In the air it is relative to the ground that was left.
+    /// The wanted velocity relative to the ground, in m/s. The part along [`up`](CharacterController::up) has
+    /// no effect: slopes and stairs are walked at this horizontal speed. In the air the velocity is relative
+    /// to the ground that the character left.
     pub velocity: Vector,
-    /// The speed at which it is to leave the ground, in m/s; 0 for none. The next step sets it back to 0,
-    /// also if there is no ground to leave.
+    /// The speed of a jump off the ground, in m/s; 0 for none. The next step resets it to 0, even if the
+    /// character is not on the ground.
     pub jump: Scalar,
-    /// Whether it is to crouch, if it has a [`CharacterCrouch`](super::crouch::CharacterCrouch).
+    /// Whether to crouch, if the character has a [`CharacterCrouch`](super::crouch::CharacterCrouch).
     pub crouch: bool,
 }
 
-/// What a character stands on.
+/// The ground below a character.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub enum GroundState {
-    /// Ground that it can walk on.
+    /// Ground that the character can walk on.
     OnGround,
     /// A slope that is too steep to stand on.
     OnSteepGround,
-    /// It touches something that does not support it: a wall, or a ceiling.
+    /// The character touches a collider that does not support it: a wall, or a ceiling.
     NotSupported,
-    /// Nothing.
+    /// The character touches nothing.
     #[default]
     InAir,
 }
 
-/// Where a character is after a step, and what the next one goes on from.
+/// The state of a character after a step, from which the next step continues.
 ///
-/// It is plain data: a character goes on with the same bits from a copy of its components.
+/// It is plain data: a character continues with the same bits from a copy of its components.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default, PartialEq)]
 #[component(map_entities)]
 pub struct CharacterState {
-    /// What it stands on.
+    /// The kind of ground below the character.
     pub ground: GroundState,
-    /// The collider that it stands on, or touches.
+    /// The collider that the character stands on or touches.
     pub ground_entity: Option<Entity>,
-    /// The point there, in the world, in metres.
+    /// The contact point on this collider, in the world, in metres.
     pub ground_point: Vector,
-    /// The outward unit normal there: that of the face beside, if the point is at an edge that
-    /// can be stood on.
+    /// The outward unit normal at the point. At an edge that the character can stand on, it is the normal of
+    /// the adjacent face.
     pub ground_normal: Vector,
-    /// The velocity of the ground at the point in m/s, that of its surface included.
+    /// The velocity of the ground at the point in m/s, including its surface velocity.
     pub ground_velocity: Vector,
-    /// How the ground turns, in rad/s. The character does not turn with it: add this, times the length of the
-    /// step, to the direction in which it looks.
+    /// The angular velocity of the ground, in rad/s. The character does not turn with the ground: add this,
+    /// times the length of the step, to its view direction.
     pub ground_spin: AngularVector,
-    /// The velocity in the air that is not the character's own, in m/s: that of the ground it left, of its
-    /// jump, and of gravity. Zero on the ground. May be written, as by a blow or an updraught.
+    /// The part of the velocity in the air that does not come from walking, in m/s: from the ground that the
+    /// character left, its jump, and gravity. Zero on the ground. May be written, for example by a blast or
+    /// an updraught.
     pub fall: Vector,
-    /// How far a drawn character is to be moved along [`up`](CharacterController::up) so that it climbs steps
-    /// smoothly, in metres.
+    /// The offset for drawing the character along [`up`](CharacterController::up), in metres, so that it
+    /// climbs steps smoothly.
     pub visual_offset: Scalar,
-    /// Whether it crouches: also where there is no room to stand up.
+    /// Whether the character crouches. It stays crouched where there is no room to stand up.
     pub is_crouching: bool,
-    /// Whether it has no room between something that moves and something that does not.
+    /// Whether the character is squeezed between a moving and a fixed obstacle.
     pub is_crushed: bool,
-    /// The force in N by which it weighs on the dynamic body that it stands on: its weight, once that
-    /// body bears it.
+    /// The force in N with which the character weighs on the dynamic body below: its weight, once that body
+    /// bears it.
     pub load: Scalar,
-    /// What carries it.
+    /// The body that carries the character.
     pub carrier: Option<Carrier>,
 }
 
-/// A body that carries a character, and the character's place on it.
+/// A body that carries a character, and the position of the character on it.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -187,13 +187,13 @@ pub struct Carrier {
     pub rotation: Rotation,
     /// The expected position of the character after the step, in metres.
     pub rider: Vector,
-    /// The point of the body under the feet, in its frame, in metres. It stays while the character does not
-    /// move by itself, so that rounding does not add up.
+    /// The point of the body under the feet, in its frame, in metres. It is kept while the character does not
+    /// move on its own, so that rounding errors do not add up.
     pub anchor: Vector,
     /// The velocity of the body under the feet, in m/s.
     pub velocity: Vector,
-    /// The velocity at which the character slides on it, in m/s: a light body that jerks does not take a
-    /// heavy character along.
+    /// The velocity at which the character slides on the body, in m/s: a light body that jerks does not take
+    /// a heavy character along.
     pub slip: Vector,
 }
 
@@ -207,12 +207,12 @@ impl MapEntities for CharacterState {
 }
 
 impl CharacterState {
-    /// Whether it stands on ground that it can walk on.
+    /// Whether the character stands on ground that it can walk on.
     pub fn is_grounded(&self) -> bool {
         self.ground == GroundState::OnGround
     }
 
-    /// Its velocity that is not its own, in m/s.
+    /// The velocity of the character without its walking, in m/s.
     pub(super) fn carried(&self) -> Vector {
         if self.is_grounded() {
             self.ground_velocity + self.carrier.map_or(Vector::ZERO, |carrier| carrier.slip)
@@ -222,49 +222,49 @@ impl CharacterState {
     }
 }
 
-/// The velocity at which the surface of a collider moves, in its frame, in m/s: of a conveyor belt, an
-/// escalator. It carries characters.
+/// The velocity of a collider's surface, in its frame, in m/s, as of a conveyor belt or an escalator. The
+/// surface carries characters.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default, PartialEq)]
 pub struct SurfaceVelocity(pub Vector);
 
-/// A character came onto the ground.
+/// A character landed on the ground.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct CharacterLanded {
     /// The character.
     #[event_target]
     pub character: Entity,
-    /// The collider that it stands on.
+    /// The collider that the character stands on.
     pub ground: Entity,
-    /// The speed at which it fell onto it, in m/s.
+    /// The speed of the fall at landing, in m/s.
     pub speed: Scalar,
 }
 
-/// A character left the ground: it jumped, or walked off, or the ground is gone.
+/// A character left the ground: it jumped, walked off, or the ground disappeared.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct CharacterLeftGround {
     /// The character.
     #[event_target]
     pub character: Entity,
-    /// Its velocity in the air that is not its own, in m/s.
+    /// The part of its velocity in the air that does not come from walking, in m/s.
     pub fall: Vector,
 }
 
-/// A character moved into something other than ground. Sent in each step in which it does.
+/// A character moved into a collider other than ground. Sent in each step in which it does.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct CharacterHit {
     /// The character.
     #[event_target]
     pub character: Entity,
-    /// The collider that it met.
+    /// The collider that the character hit.
     pub collider: Entity,
     /// The point of the collider, in the world, in metres.
     pub point: Vector,
     /// The outward unit normal of the collider.
     pub normal: Vector,
-    /// The impulse by which it pushed a dynamic body, in N·s; 0 for other colliders.
+    /// The impulse with which the character pushed a dynamic body, in N·s; 0 for other colliders.
     pub impulse: Scalar,
 }
 
@@ -274,8 +274,8 @@ pub struct CharacterClimbed {
     /// The character.
     #[event_target]
     pub character: Entity,
-    /// The step.
+    /// The collider of the step.
     pub collider: Entity,
-    /// How far it was raised in this step of the simulation, in metres. A round foot takes several.
+    /// How far the character rose in this simulation step, in metres. A round foot takes several.
     pub height: Scalar,
 }

@@ -22,9 +22,9 @@ use crate::{
 
 /// The shapes of a character that can crouch.
 ///
-/// While [`CharacterInput::crouch`] is set, its [`Collider`] is the lower shape; then the upper one again, as
-/// soon as that touches nothing. The feet stay where they are. [`CharacterState::is_crouching`] tells which
-/// shape it has. The character is spawned with the upper one.
+/// While [`CharacterInput::crouch`] is set, the [`Collider`] of the character is the lower shape. Afterwards
+/// it is the upper shape again, as soon as that touches nothing. The feet stay where they are.
+/// [`CharacterState::is_crouching`] tells the present shape. Spawn the character with the upper shape.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -44,13 +44,13 @@ use crate::{
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component)]
 pub struct CharacterCrouch {
-    /// The shape in which it stands and walks.
+    /// The shape of the standing or walking character.
     pub standing: Collider,
-    /// The shape in which it crouches.
+    /// The shape of the crouching character.
     pub crouching: Collider,
 }
 
-/// A character that can crouch, as it is.
+/// A character that can crouch, with its present state.
 type Standing = (
     Entity,
     &'static CharacterController,
@@ -63,7 +63,7 @@ type Standing = (
     Option<&'static CollisionLayers>,
 );
 
-/// The characters, and what is around them.
+/// The characters that can crouch, and the colliders around them.
 #[derive(SystemParam)]
 pub(super) struct Room<'w, 's> {
     characters: Query<'w, 's, Standing, Without<RigidBodyDisabled>>,
@@ -79,7 +79,7 @@ struct Change {
 }
 
 impl Room<'_, '_> {
-    /// The characters that crouch or stand up now.
+    /// The characters that crouch or stand up in this step.
     fn changes(&self) -> Vec<Change> {
         let mut changes = Vec::new();
         for (entity, controller, crouch, input, state, shape, position, rotation, layers) in &self.characters
@@ -110,10 +110,10 @@ impl Room<'_, '_> {
     }
 }
 
-/// What changes of a character.
+/// The components that a change of shape writes.
 type Stance = (&'static mut Collider, &'static mut Position, &'static mut CharacterState);
 
-/// Gives characters that crouch or stand up their shape.
+/// Applies the shapes of characters that crouch or stand up.
 pub(super) fn change_stances(mut params: ParamSet<(Room, Query<Stance>)>) {
     let changes = params.p0().changes();
     let mut stances = params.p1();

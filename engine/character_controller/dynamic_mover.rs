@@ -15,20 +15,19 @@ use crate::{
 /// A character that is a dynamic body: forces drive it toward [`CharacterInput::velocity`], and a spring
 /// between its feet and the ground carries it.
 ///
-/// Everything acts on it, and it acts on everything, by its mass: it is thrown by blasts, pushes
-/// crates, makes a raft tilt. For a character that moves exactly, see
-/// [`CharacterController`](super::controller::CharacterController), which has the same input,
-/// state and events.
+/// All forces act on it, and it acts on other bodies, by its mass: blasts throw it, it pushes crates, and it
+/// tilts a raft. For exact motion see [`CharacterController`](super::controller::CharacterController), which
+/// has the same input, state and events.
 ///
-/// - The spring pulls as well as it pushes, so that stairs down and crests of hills are followed. Steps lower
-///   than [`float_height`](Self::float_height) pass below its collider.
-/// - Slopes up to [`max_slope`](Self::max_slope) are walked at the horizontal speed asked for, and stood on
-///   without sliding.
-/// - The ground, if it is dynamic, gets the opposite of all forces.
-/// - It does not turn, has no friction of its own, and does not sleep.
+/// - The spring pulls as well as pushes, so that the character follows stairs down and crests of hills. Steps
+///   lower than [`float_height`](Self::float_height) pass below its collider.
+/// - The character walks slopes up to [`max_slope`](Self::max_slope) at the horizontal input speed, and
+///   stands on them without sliding.
+/// - Dynamic ground gets the opposite of all forces.
+/// - The body does not turn, has no friction of its own, and does not sleep.
 ///
-/// Of [`CharacterState`] all of the ground is used, and [`fall`](CharacterState::fall) for what it keeps of
-/// the velocity of the ground that it left, to which the input in the air is relative.
+/// Of [`CharacterState`] it uses all fields about the ground. [`fall`](CharacterState::fall) holds the
+/// velocity that is kept from the ground that it left; the input in the air is relative to this velocity.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -55,27 +54,27 @@ use crate::{
 #[reflect(Debug, Component, Default, PartialEq)]
 #[require(RigidBody::Dynamic, LockedAxes::ROTATION_LOCKED, Friction = smooth(), CharacterInput, CharacterState)]
 pub struct DynamicMover {
-    /// The direction against which the character stands. It may change at any time. +y by default.
+    /// The upward direction of the character. It may change at any time. +y by default.
     pub up: Dir,
-    /// The steepest slope that it walks on, in radians. 50 degrees by default.
+    /// The steepest slope that the character walks on, in radians. 50 degrees by default.
     pub max_slope: Scalar,
     /// The distance between the collider and the ground at which the spring carries its weight, in metres, as
     /// all lengths here scaled by [`PhysicsLengthUnit`](crate::prelude::PhysicsLengthUnit). 0.3 by default.
     /// At 0 there is no spring, and the collider slides on the ground.
     pub float_height: Scalar,
-    /// How much farther than [`float_height`](Self::float_height) the ground may drop away without the
-    /// character leaving it, in metres. 0.3 by default.
+    /// How far the ground may drop beyond [`float_height`](Self::float_height) without the character leaving
+    /// it, in metres. 0.3 by default.
     pub snap_distance: Scalar,
     /// The frequency of the spring in Hz. 5 by default.
     pub frequency: Scalar,
     /// The damping ratio of the spring; 1 is critical. 1 by default.
     pub damping_ratio: Scalar,
-    /// The largest acceleration on the ground in m/s². Times its mass, it is the largest force by which it
-    /// pushes. 40 by default.
+    /// The largest acceleration on the ground in m/s². Times the mass, it is the largest force with which the
+    /// character pushes. 40 by default.
     pub max_acceleration: Scalar,
     /// The largest acceleration in the air in m/s². 10 by default.
     pub max_air_acceleration: Scalar,
-    /// What is ground for it. Its own colliders need not be excluded.
+    /// The colliders that count as ground. Its own colliders need not be excluded.
     pub filter: SpatialQueryFilter,
 }
 

@@ -6,11 +6,11 @@ use crate::{
     math::{Scalar, Vector},
 };
 
-/// The least horizontal share of a normal along which characters part.
+/// Minimum horizontal part of a normal along which characters separate.
 const LEVEL: Scalar = 0.05;
 
 impl Planning<'_> {
-    /// Moves out of friends, half of the way: they do the other half.
+    /// Moves half of the way out of overlapping friends. The friends move the other half.
     pub(super) fn yield_to_friends(&mut self) {
         let around = self.around;
         let friends = self.controller.friends;
@@ -25,7 +25,8 @@ impl Planning<'_> {
         for part in friendly.near(self.walker.position, 0.0) {
             let flat = self.walker.horizontal(part.normal);
             let other = around.bodies.position_of(part.entity);
-            // Who stands in the very same place parts along any direction, by the order of both.
+            // Characters at the same place separate along any direction, signed by the order of their
+            // entities.
             let (direction, depth) = if other.is_some_and(|other| self.is_at(other)) {
                 let sign = if around.bodies.body_of(part.entity) < Some(self.entity) { 1.0 } else { -1.0 };
                 (self.aside() * sign, 2.0 * farthest)
@@ -41,7 +42,7 @@ impl Planning<'_> {
         self.moved_on(self.walker.position - start);
     }
 
-    /// Whether a position is above or below the character's.
+    /// Whether a position is above or below the position of the character.
     fn is_at(&self, other: Vector) -> bool {
         self.walker.horizontal(other - self.walker.position).length() < self.walker.mover.skin
     }

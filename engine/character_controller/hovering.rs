@@ -1,16 +1,16 @@
-//! The systems that drive dynamic movers: each finds the ground below, and gets the force of the spring and
-//! of its drive.
+//! The systems that drive dynamic movers. Each mover finds the ground below, and gets the forces of its
+//! spring and its drive.
 //!
-//! The spring is integrated implicitly, so that it is stable at any rate: with x the distance above the
-//! height of rest, v its rate, and h the length of the step, the acceleration is that at the end of the step,
+//! The spring is integrated implicitly, so that it is stable at any rate. With x the distance above the rest
+//! height, v its rate, and h the length of the step, the acceleration is the value at the end of the step,
 //!
 //! ```text
 //! a = -k (x + h (v + h a)) - c (v + h a),   k = (2π f)²,   c = 2 ζ (2π f)
 //! ```
 //!
 //! (E. Catto, "Soft Constraints", GDC 2011). It is applied as an impulse at the start of the step, so that
-//! the whole of the step has the velocity at its end: a platform that turns is followed exactly. Gravity acts
-//! throughout the step, and is balanced by a force, so that the spring does not sag.
+//! the final velocity holds for the whole step: a turning platform is followed exactly. Gravity acts
+//! throughout the step and is balanced by a force, so that the spring does not sag.
 
 use bevy_ecs::prelude::*;
 use bevy_time::Time;
@@ -43,22 +43,22 @@ use crate::{
     threads::Threads,
 };
 
-/// The distance up to which a mover without a spring touches the ground, in metres: contacts of the solver
+/// Maximum distance at which a mover without a spring touches the ground, in metres: contacts of the solver
 /// rest within it.
 const TOUCHING: Scalar = 0.02;
 
-/// Maximum speed that the load of one step gives unsteady ground, in m/s. More throws light crates whose edge
-/// it steps on, with less it sinks into them.
+/// Maximum speed that the load of one step gives unsteady ground, in m/s. A larger value throws light crates
+/// when the mover steps on their edge; with a smaller value the mover sinks into them.
 const MAX_KICK: Scalar = 10.0;
 
-/// What acts on a mover in the step to come.
+/// The forces on a mover in the coming step.
 #[derive(Component, Clone, Debug, Default)]
 pub(super) struct MoverPlan {
-    /// In N.
+    /// The force in N.
     force: Vector,
-    /// In N·s.
+    /// The impulse in N·s.
     impulse: Vector,
-    /// The body that gets the opposite, and the point there.
+    /// The body that gets the opposite force and impulse, and the point where they act.
     ground: Option<(Entity, Vector)>,
     landed: Option<CharacterLanded>,
     left: Option<CharacterLeftGround>,
@@ -82,13 +82,14 @@ struct Below {
     motion: Option<Motion>,
     point: Vector,
     normal: Vector,
-    /// Whether it can be walked on.
+    /// Whether the ground can be walked on.
     is_floor: bool,
-    /// From the collider to the ground.
+    /// The distance from the collider to the ground.
     gap: Scalar,
-    /// The mean velocity of its point and surface in the step.
+    /// The mean velocity of the point and the surface of the ground in the step.
     velocity: Vector,
-    /// Its inverse mass at the point, along the missing velocity and upwards: 0 if it is not dynamic.
+    /// The inverse effective mass of the ground at the point, along the missing velocity and upwards: 0 if it
+    /// is not dynamic.
     inverse: [Scalar; 2],
 }
 
@@ -148,14 +149,14 @@ pub(super) fn plan_movers(
     });
 }
 
-/// A mover in the step to come.
+/// A mover in the coming step.
 struct Hover<'a> {
     walker: Walker<'a>,
     mover: &'a DynamicMover,
     velocity: Vector,
     gravity: Vector,
     time: Scalar,
-    /// The height of rest.
+    /// The rest height.
     rest: Scalar,
     mass: Scalar,
 }
@@ -225,7 +226,7 @@ impl Hover<'_> {
             let directions = [missing.normalize_or_zero(), up];
             ground.inverse = directions.map(|along| bodies.inverse_mass_at(body, point, along));
             let gravity = -self.gravity.dot(up);
-            // It falls where it is not borne, so its load grows fast.
+            // Ground that does not bear the mover lets it fall, so the load grows fast.
             let growing = (ground.inverse[1], 1.0);
             state.load = borne(load, yielded, (self.mass, gravity), growing, self.time);
             if !is_known || yielded.abs() > gravity * self.time {
@@ -235,7 +236,7 @@ impl Hover<'_> {
         }
         if input.jump > 0.0 {
             let speed = ground.velocity.dot(up) + self.walker.lift(ground.normal, own).max(0.0) + input.jump;
-            // What bears its weight is as firm as what it lies on itself.
+            // Ground that bears the whole weight is as firm as the surface below it.
             let weight = -self.gravity.dot(up) * self.mass;
             let free = if weight > 0.0 { 1.0 - state.load / weight } else { 1.0 };
             let share = self.share(ground.inverse[1] * free);
@@ -261,8 +262,8 @@ impl Hover<'_> {
         }
     }
 
-    /// The velocity of the ground that the mover keeps in the air. Of dynamic ground only the part that the
-    /// mover already has: that may be a crate that it kicked.
+    /// The ground velocity that the mover keeps in the air. From dynamic ground it keeps only the part that
+    /// it already has: the ground may be a crate that it kicked.
     fn kept_of(&self, ground: Vector, is_dynamic: bool, own: Vector) -> Vector {
         let along = self.walker.horizontal(ground);
         let square = along.length_squared();
@@ -273,18 +274,18 @@ impl Hover<'_> {
         ground - along * (1.0 - carried.clamp(0.0, 1.0))
     }
 
-    /// The share of an impulse that it takes to change its velocity relative to a body of an inverse mass.
+    /// The share of an impulse needed to change the velocity relative to a body with an inverse mass.
     fn share(&self, inverse: Scalar) -> Scalar {
         1.0 / (1.0 + self.mass * inverse)
     }
 
-    /// Whether the ground carries: what is in the air is caught as it comes down.
+    /// Whether the ground carries the mover. A mover in the air is caught on its way down.
     fn is_caught(&self, ground: &Below, was_grounded: bool) -> bool {
         let touching = if self.rest > 0.0 { self.rest } else { TOUCHING * self.walker.mover.unit };
         ground.is_floor && (was_grounded || (ground.gap <= touching && self.rate(ground) <= 0.0))
     }
 
-    /// The rate at which the gap grows, in m/s, as it moves along a slope.
+    /// The rate at which the gap grows, in m/s, while the mover moves along a slope.
     fn rate(&self, ground: &Below) -> Scalar {
         let relative = self.velocity - ground.velocity;
         let across = self.walker.horizontal(relative);
@@ -302,14 +303,14 @@ impl Hover<'_> {
         up * (acceleration * self.mass * self.share(ground.inverse[1]))
     }
 
-    /// The force that adds a velocity in the step, in N, up to a largest acceleration.
+    /// The force that adds a velocity in one step, in N, limited by a maximum acceleration.
     fn drive(&self, missing: Vector, largest: Scalar) -> Vector {
         let largest = if largest > 0.0 { largest } else { 0.0 };
         (missing / self.time).clamp_length_max(largest) * self.mass
     }
 }
 
-/// Notes the ground below.
+/// Records the ground below.
 fn note_ground(state: &mut CharacterState, below: Option<&Below>) {
     let before = (state.ground_velocity, state.is_grounded());
     state.carrier = None;
@@ -319,17 +320,17 @@ fn note_ground(state: &mut CharacterState, below: Option<&Below>) {
     state.ground_spin = below.and_then(|ground| ground.motion).map_or(AngularVector::default(), |m| m.spin);
     state.ground_velocity = match below {
         Some(ground) => ground.velocity,
-        // The velocity of the ground that is left.
+        // The velocity of the ground that the mover leaves.
         None if before.1 => before.0,
         None => Vector::ZERO,
     };
 }
 
-/// What is driven of a mover.
+/// The components with which a mover is driven.
 type Driven = (Entity, &'static BodyId, &'static mut MoverPlan, &'static mut CharacterInput);
 
-/// Applies the forces of movers, and the opposite to the ground, and sends their events in the order
-/// of their ids.
+/// Applies the forces of movers to the movers and the opposite forces to the ground, and sends their events
+/// in order of ids.
 pub(super) fn drive_movers(
     mut movers: Query<Driven, Without<RigidBodyDisabled>>,
     mut bodies: Query<Forces>,

@@ -1,4 +1,4 @@
-//! Characters: shapes that the game moves, and that slide along what they meet.
+//! Characters: shapes that the game moves, and that slide along obstacles.
 //!
 //! | I want to | use |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! [`MoveAndSlide`]: moves a shape by a velocity, and slides it along what it meets.
+//! [`MoveAndSlide`]: moves a shape by a velocity, and slides it along colliders.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_reflect::prelude::*;
@@ -26,17 +26,18 @@ use crate::{
 /// The cosine of 5 degrees.
 pub const COS_5_DEGREES: Scalar = 0.996_194_7;
 
-/// The share of its speed at which a shape may part from what it still touches.
+/// The minimum share of its speed at which a shape that touches a collider counts as parting from it.
 const PARTING: Scalar = 1.0e-3;
 
-/// Moves a shape that the game drives, and slides it along what it meets; as a system parameter.
+/// A system parameter that moves a shape driven by the game, and slides it along colliders.
 ///
-/// It is for kinematic characters that set their own [`Position`] or `Transform`, not for bodies that a
-/// velocity moves. It knows nothing of floors, slopes and stairs:
-/// [`character_controller`](crate::character_controller) says what does.
+/// It is for kinematic characters that set their own [`Position`] or `Transform`, not for bodies that move by
+/// a velocity. It does not handle floors, slopes and stairs; for these see
+/// [`character_controller`](crate::character_controller).
 ///
-/// The shape keeps [`skin_width`](MoveAndSlideConfig::skin_width) from all colliders. It meets colliders of
-/// bodies; sensors and disabled colliders are passed by. Queries see the world as its components are.
+/// The shape keeps [`skin_width`](MoveAndSlideConfig::skin_width) from all colliders. Only colliders of
+/// bodies stop it; it passes through sensors and disabled colliders. Queries see the components as they are
+/// now.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -86,24 +87,25 @@ pub struct MoveAndSlide<'w, 's> {
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub struct MoveAndSlideConfig {
-    /// The most sweeps of a move. After the last one the rest of the move is lost. 4 by default.
+    /// Maximum number of sweeps per move. After the last one the rest of the move is lost. 4 by default.
     pub move_and_slide_iterations: usize,
-    /// The most rounds of depenetration before a move, and after it. 16 by default.
+    /// Maximum number of depenetration rounds before and after a move. 16 by default.
     pub depenetration_iterations: usize,
     /// The overlap with the skin that depenetration may leave, in metres, scaled by [`PhysicsLengthUnit`].
     /// 0.0001 by default.
     pub max_depenetration_error: Scalar,
-    /// The deepest overlap that depenetration solves, in metres, scaled by [`PhysicsLengthUnit`]. A shape
-    /// that is deeper in a collider stays. 0.5 by default.
+    /// The deepest overlap that depenetration resolves, in metres, scaled by [`PhysicsLengthUnit`]. A shape
+    /// with a deeper overlap stays in place. 0.5 by default.
     pub penetration_rejection_threshold: Scalar,
-    /// The distance that the shape keeps, in metres, scaled by [`PhysicsLengthUnit`]. 0.01 by default.
+    /// The distance that the shape keeps from colliders, in metres, scaled by [`PhysicsLengthUnit`]. 0.01 by
+    /// default.
     pub skin_width: Scalar,
-    /// Outward normals of planes that the velocity never goes into. None by default.
+    /// Outward normals of planes that the velocity never points into. None by default.
     pub planes: Vec<Dir>,
-    /// Planes with normals whose dot product is more than this count as one: the one that the velocity goes
+    /// Planes whose normals have a larger dot product count as one plane: the one that the velocity points
     /// into more. [`COS_5_DEGREES`] by default.
     pub plane_similarity_dot_threshold: Scalar,
-    /// The most planes that a velocity is projected on at once, [`planes`](Self::planes) included.
+    /// Maximum number of planes that a velocity is projected on at once, including [`planes`](Self::planes).
     /// 20 by default.
     pub max_planes: usize,
 }
@@ -123,7 +125,7 @@ impl Default for MoveAndSlideConfig {
     }
 }
 
-/// Settings of [`MoveAndSlide::depenetrate`], as those of [`MoveAndSlideConfig`].
+/// Settings of [`MoveAndSlide::depenetrate`]: a subset of [`MoveAndSlideConfig`].
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -156,27 +158,28 @@ impl From<&MoveAndSlideConfig> for DepenetrationConfig {
     }
 }
 
-/// Where a shape came to be.
+/// The result of moving a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, PartialEq)]
 pub struct MoveAndSlideOutput {
-    /// Its position in metres.
+    /// The new position of the shape in metres.
     pub position: Vector,
-    /// Its velocity in m/s, without what went into the planes it met. A character that is to keep its speed
-    /// along the floor does not take this for its velocity, but the way it wants to go.
+    /// The velocity of the shape in m/s, without the components that pointed into planes. A character that
+    /// keeps its speed along the floor should not reuse it as its velocity, but take its wanted velocity
+    /// again.
     pub projected_velocity: Vector,
 }
 
-/// A plane that a shape met in [`MoveAndSlide::move_and_slide`], and the state of the move, which
-/// may be changed.
+/// A plane that a shape hit in [`MoveAndSlide::move_and_slide`], and the state of the move, which may be
+/// changed.
 #[derive(Debug, PartialEq)]
 pub struct MoveAndSlideHitData<'a> {
     /// The collider of this plane.
     pub entity: Entity,
     /// How far the shape moved in this sweep until it was [`skin_width`](MoveAndSlideConfig::skin_width)
-    /// away, in metres. 0 if it touched from the start of the move.
+    /// away, in metres. 0 if it touched at the start of the move.
     pub distance: Scalar,
     /// The nearest point of the collider, in the world, in metres.
     pub point: Vector,
@@ -186,8 +189,8 @@ pub struct MoveAndSlideHitData<'a> {
     pub position: &'a mut Vector,
     /// The velocity of the shape in m/s, before it is projected.
     pub velocity: &'a mut Vector,
-    /// How far the shape would move until it touches the collider itself, in metres; along the normal
-    /// where it slides.
+    /// How far the shape would move until it touches the collider itself, in metres; where it slides,
+    /// measured along the normal.
     pub collision_distance: Scalar,
 }
 
@@ -198,7 +201,7 @@ impl MoveAndSlideHitData<'_> {
     }
 }
 
-/// What becomes of a move after a hit.
+/// The effect of a hit on a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MoveAndSlideHitResponse {
     /// The shape slides along the plane.
@@ -210,7 +213,7 @@ pub enum MoveAndSlideHitResponse {
     Abort,
 }
 
-/// The first collider on the way of a shape.
+/// The first collider that a moving shape hits.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -218,11 +221,11 @@ pub enum MoveAndSlideHitResponse {
 pub struct MoveHitData {
     /// The collider.
     pub entity: Entity,
-    /// How far the shape can move until the collider is at the distance of the skin, in metres.
+    /// How far the shape can move until its distance to the collider is the skin width, in metres.
     pub distance: Scalar,
-    /// The nearest point of the collider then, in the world, in metres.
+    /// The nearest point of the collider at the hit, in the world, in metres.
     pub point1: Vector,
-    /// The nearest point of the shape then, in the world, in metres.
+    /// The nearest point of the shape at the hit, in the world, in metres.
     pub point2: Vector,
     /// The outward unit normal of the collider.
     pub normal1: Vector,
@@ -240,12 +243,12 @@ impl MoveHitData {
 }
 
 impl MoveAndSlide<'_, '_> {
-    /// Moves a shape by a velocity in m/s, for a time, and slides it along what it meets. `on_hit` is called
-    /// for each plane that it touches and does not leave, at the start of the move and where a sweep ends;
-    /// the same plane may come more than once.
+    /// Moves a shape by a velocity in m/s, for a time, and slides it along colliders. `on_hit` is called for
+    /// each plane that the shape touches and does not leave, at the start of the move and after each sweep.
+    /// It may be called several times for the same plane.
     ///
-    /// Before and after the move the shape is moved out of what it overlaps. A position or velocity that is
-    /// infinite or NaN moves nothing: the velocity is then zero.
+    /// Before and after the move the shape is moved out of overlaps. If the position or velocity is infinite
+    /// or NaN, the shape does not move, and the resulting velocity is zero.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     pub fn move_and_slide(
         &self,
@@ -299,10 +302,11 @@ impl MoveAndSlide<'_, '_> {
         MoveAndSlideOutput { position, projected_velocity: velocity }
     }
 
-    /// The first hit of a shape on its way, in metres. `skin_width` is scaled by [`PhysicsLengthUnit`].
+    /// The first hit of a moving shape, over a movement in metres. `skin_width` is scaled by
+    /// [`PhysicsLengthUnit`].
     ///
-    /// A collider that is nearer than the skin from the start is hit at distance 0, unless the way leads
-    /// along it or off it. `None` also if a number is infinite or NaN.
+    /// A collider that is nearer than the skin at the start is hit at distance 0, unless the movement is
+    /// along it or away from it. `None` also if a number is infinite or NaN.
     pub fn cast_move(
         &self,
         shape: &Collider,
@@ -321,8 +325,8 @@ impl MoveAndSlide<'_, '_> {
     }
 
     /// Whether a shape has room at a position: no collider is nearer than `skin_width`, which is in metres,
-    /// scaled by [`PhysicsLengthUnit`]. For a character that is to stand up, or to appear somewhere. Exclude
-    /// its own colliders in the filter. `false` if a number is infinite or NaN. Beyond Avian.
+    /// scaled by [`PhysicsLengthUnit`]. Use it before a character stands up or appears somewhere. Exclude its
+    /// own colliders in the filter. `false` if a number is infinite or NaN. Beyond Avian.
     pub fn fits(
         &self,
         shape: &Collider,
@@ -335,8 +339,8 @@ impl MoveAndSlide<'_, '_> {
         self.mover(&is_solid, shape, shape_rotation, skin_width, filter).fits(shape_position)
     }
 
-    /// The displacement in metres that moves a shape out of what it overlaps with its skin, the shortest one
-    /// where colliders are flat. Between colliders that leave no room it is midway.
+    /// The displacement in metres that moves a shape and its skin out of overlaps. It is the shortest one if
+    /// the colliders are flat. Between colliders without enough room it leads to the middle.
     pub fn depenetrate(
         &self,
         shape: &Collider,
@@ -351,9 +355,10 @@ impl MoveAndSlide<'_, '_> {
     }
 
     /// The displacement in metres that moves a shape by at least the given distances along the given normals,
-    /// but for [`max_depenetration_error`](DepenetrationConfig::max_depenetration_error).
+    /// up to an error of [`max_depenetration_error`](DepenetrationConfig::max_depenetration_error).
     ///
-    /// Planes are taken one after the other, again and again, so that it is near the shortest one.
+    /// Planes are resolved one after the other, in several rounds, so that the displacement is near the
+    /// shortest one.
     pub fn depenetrate_intersections(
         &self,
         config: &DepenetrationConfig,
@@ -379,10 +384,11 @@ impl MoveAndSlide<'_, '_> {
     }
 
     /// Calls `callback` with each convex part of a collider within `prediction_distance` metres of a shape,
-    /// until it returns `false`: the collider, the point midway between both, with its penetration, and the
-    /// normal from the collider to the shape. Parts of a collider with about the same normal are one.
+    /// until it returns `false`. The arguments are the collider, the point midway between collider and shape
+    /// with its penetration, and the normal from the collider to the shape. Parts of a collider with about
+    /// the same normal count as one.
     ///
-    /// Anchors are from the positions of the shape and of the collider.
+    /// Anchors are relative to the positions of the shape and of the collider.
     pub fn intersections(
         &self,
         shape: &Collider,
@@ -436,12 +442,12 @@ impl MoveAndSlide<'_, '_> {
     }
 }
 
-/// A move between two sweeps.
+/// The state of a move between two sweeps.
 struct Slide<'a, 'm> {
     config: &'a MoveAndSlideConfig,
     mover: &'a mut Mover<'m>,
-    /// All planes met in this move. The velocity that was wanted is projected on them at once: one after the
-    /// other they would throw a shape from wall to wall in a corner.
+    /// All planes hit in this move. The wanted velocity is projected on all of them at once: projected one
+    /// after the other, they would throw a shape from wall to wall in a corner.
     planes: &'a mut Vec<Plane>,
     wanted: &'a mut Vector,
     position: &'a mut Vector,
@@ -449,7 +455,7 @@ struct Slide<'a, 'm> {
 }
 
 impl Slide<'_, '_> {
-    /// Reports what is touched, and turns the velocity along it.
+    /// Reports the touched parts, and turns the velocity along them.
     fn meet(
         &mut self,
         stopped_by: Option<Sweep>,

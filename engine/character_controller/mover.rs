@@ -1,9 +1,9 @@
-//! A shape among the colliders: what it touches, how far it can move, and how it gets out of
-//! what it overlaps.
+//! A shape among the colliders: the parts that it touches, how far it can move, and how it gets out of
+//! overlaps.
 //!
-//! A shape keeps a distance from colliders, its skin. The skin has a slack: a shape that stands at the
-//! distance of the skin moves along a surface with rounding errors, and sweeps must not stop at those. So a
-//! sweep stops short of the skin, and a shape is touching up to a little more than the skin.
+//! A shape keeps a distance from colliders, its skin. The skin has a slack: a shape at the distance of the
+//! skin moves along a surface with rounding errors, and sweeps must not stop at these errors. So a sweep
+//! stops slightly inside the skin, and a shape touches up to slightly more than the skin.
 
 use bevy_ecs::prelude::*;
 
@@ -14,31 +14,32 @@ use crate::{
     spatial_query::{NearPart, ShapeCastConfig, SpatialQuery, SpatialQueryFilter},
 };
 
-/// The slack, as a share of the skin. More keeps a worse distance; less stops at rounding errors.
+/// The slack, as a share of the skin. A larger value keeps the distance less precisely; a smaller one stops
+/// at rounding errors.
 const SLACK: Scalar = 0.02;
 
-/// The least slack of a thin skin, in lengths of a metre.
+/// The minimum slack of a thin skin, in lengths of a metre.
 const LEAST_SLACK: Scalar = 1.0e-5;
 
-/// Normals with a smaller difference are one. More lets the edges of tiles lift what runs over them; less
-/// asks more about edges.
+/// Normals with a smaller difference count as equal. A larger value lets the edges of tiles lift a shape that
+/// moves over them; a smaller one needs more tests of edges.
 const SAME_NORMAL: Scalar = 3.0e-4;
 
-/// Of the parts of one collider whose normals have a greater dot product, the nearest stands for all: the
-/// cosine of 2.5 degrees. A sweep finds the others. More stops at facets that are found late; less asks about
-/// edges of facets that are all alike.
+/// Of the parts of one collider whose normals have a larger dot product, only the nearest counts: the cosine
+/// of 2.5 degrees. A sweep finds the others. A larger value tests edges of facets that are all alike; a
+/// smaller one stops at facets that are found late.
 const SIMILAR_PART: Scalar = 0.999_048_2;
 
-/// The least share of `up` in the normal of an edge that carries a character, and of what lifts it out
-/// of an overlap.
+/// The minimum component along `up` of the normal of an edge that carries a character, and of a normal along
+/// which recovery lifts it out of an overlap.
 pub(super) const EDGE: Scalar = 0.05;
 
-/// What stops a shape is not the edge that is asked about if its normal is farther from it than this: the
-/// cosine of 10 degrees.
+/// If the dot product of normals is less than this, the shape is stopped by something other than the tested
+/// edge: the cosine of 10 degrees.
 const SIMILAR_NORMAL: Scalar = 0.984_807_7;
 
-/// The least rate at which a shape closes with what stops it, as a share of its speed, in the
-/// pull-back from it.
+/// The minimum rate at which a shape approaches an obstacle, as a share of its speed, when the shape is moved
+/// back from it.
 const LEAST_RATE: Scalar = 1.0e-3;
 
 fn is_same(a: Vector, b: Vector) -> bool {
@@ -55,36 +56,36 @@ pub(super) struct Mover<'a> {
     pub(super) shape: &'a Collider,
     pub(super) rotation: RotationValue,
     pub(super) filter: &'a SpatialQueryFilter,
-    /// In metres, as all lengths here.
+    /// The skin in metres, as all lengths here.
     pub(super) skin: Scalar,
     /// The length of a metre.
     pub(super) unit: Scalar,
 }
 
-/// The first collider on the way of a shape.
+/// The first collider that a moving shape hits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sweep {
     pub(super) part: NearPart,
-    /// The way to where the part is at the distance of the skin.
+    /// The movement until the part is at the distance of the skin.
     pub(super) distance: Scalar,
-    /// The way to where the shapes themselves meet, if the part is a plane.
+    /// The movement until the shapes themselves touch, if the part is a plane.
     pub(super) collision_distance: Scalar,
 }
 
-/// How a shape gets out of what it overlaps.
+/// Settings for moving a shape out of overlaps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recovery {
     pub(super) rounds: usize,
-    /// What may be left.
+    /// The overlap that may be left.
     pub(super) error: Scalar,
-    /// Deeper overlaps stay.
+    /// Deeper overlaps are left unresolved.
     pub(super) deepest: Scalar,
-    /// Walls do not lift along this.
+    /// Walls do not lift the shape along this direction.
     pub(super) up: Vector,
 }
 
 impl Recovery {
-    /// The normal that a part pushes along.
+    /// The direction in which a part pushes.
     fn push_of(&self, normal: Vector) -> Vector {
         let rise = normal.dot(self.up);
         if rise == 0.0 || rise.abs() > EDGE { normal } else { (normal - self.up * rise).normalize_or_zero() }
@@ -92,7 +93,8 @@ impl Recovery {
 }
 
 impl Mover<'_> {
-    /// How much less than the skin is no hit of a sweep, and how much more is a touch.
+    /// The slack of the skin: sweeps ignore overlaps with the skin up to this depth, and parts up to this
+    /// distance beyond the skin are touched.
     pub(super) fn slack(&self) -> Scalar {
         (SLACK * self.skin).max(LEAST_SLACK * self.unit)
     }
@@ -101,8 +103,8 @@ impl Mover<'_> {
         (self.is_solid)(entity) && !self.ignored.contains(&entity)
     }
 
-    /// The first hit on the way. What the shape is within the skin of is no hit if the way leads along
-    /// it or off it.
+    /// The first hit of a movement. A part that is within the skin at the start is no hit if the movement
+    /// leads along it or away from it.
     pub(super) fn sweep(&self, position: Vector, movement: Vector) -> Option<Sweep> {
         self.sweep_at(position, movement, &|_| true)
     }
@@ -145,8 +147,8 @@ impl Mover<'_> {
         })
     }
 
-    /// The parts that the shape touches, nearest first, and one more that stopped it. Edges between parts
-    /// that are flush are none.
+    /// The parts that the shape touches, nearest first, and one more part that stopped it. Edges between
+    /// flush parts are left out.
     pub(super) fn touching(&self, position: Vector, stopped_by: Option<NearPart>) -> Vec<NearPart> {
         let mut near = self.near(position, self.skin + self.slack());
         near.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -178,7 +180,7 @@ impl Mover<'_> {
         parts
     }
 
-    /// The parts within a distance, one of each collider with about the same normal: the nearest.
+    /// The parts within a distance. Of parts of one collider with about the same normal, only the nearest.
     pub(super) fn near(&self, position: Vector, reach: Scalar) -> Vec<NearPart> {
         let takes = |entity| self.takes(entity);
         let mut parts: Vec<NearPart> = Vec::new();
@@ -194,18 +196,18 @@ impl Mover<'_> {
         parts
     }
 
-    /// Whether the shape has room: nothing is nearer than its skin.
+    /// Whether the shape has room: no part is nearer than the skin.
     pub(super) fn fits(&self, position: Vector) -> bool {
         let least = self.skin - self.slack();
         position.is_finite() && self.near(position, self.skin).iter().all(|part| part.distance >= least)
     }
 
-    /// Whether a part is met at an edge that is flush with the plane of another: the shape moves over it
-    /// along that plane.
+    /// Whether a part is touched at an edge that is flush with the plane of another: the shape moves over the
+    /// edge along that plane.
     ///
-    /// The union of both has no such edge there. Each of two parts with about the same normal may seem flush
-    /// with the plane of the other. So the shape moves so far that a part which rises from the plane by the
-    /// angle of the normals stops it.
+    /// The union of both parts has no such edge. Each of two parts with about the same normal may seem flush
+    /// with the plane of the other. So the test moves the shape far enough that a part rising from the plane
+    /// by the angle between the normals would stop it.
     fn is_inner_edge(&self, position: Vector, edge: &NearPart, plane: &NearPart) -> bool {
         let cosine = edge.normal.dot(plane.normal);
         let height = (edge.points[0] - plane.points[0]).dot(plane.normal);
@@ -221,12 +223,12 @@ impl Mover<'_> {
         met.is_none_or(|hit| hit.part.normal.dot(edge.normal) < SIMILAR_NORMAL)
     }
 
-    /// The shortest way out of what the shape overlaps with its skin, as a displacement.
+    /// The shortest displacement that moves the shape and its skin out of overlaps.
     ///
-    /// The deepest overlap is solved first, and looked at again: a box that sank into tiles is no longer in
-    /// those beside when it is above one. Between two walls that lean apart there may be no way but a long
-    /// one up: along `up` walls do not lift. `share` gives the fraction of an overlap with a part that the
-    /// shape resolves.
+    /// The deepest overlap is resolved first, and then overlaps are found again: a box that sank into tiles
+    /// and is now above one of them does not overlap the adjacent ones any more. Between two walls that lean
+    /// outward, the only way out may be a long one upward; so walls do not lift along `up`. `share` gives the
+    /// fraction of an overlap with a part that the shape resolves.
     pub(super) fn recovery(
         &self,
         position: Vector,

@@ -1,16 +1,16 @@
-//! The point nearest to a given one that is above all of some planes.
+//! The point nearest to a given one that is above all given planes.
 //!
 //! Planes are taken one after the other, as in R. Seidel, "Small-dimensional linear programming and convex
-//! hulls made easy" (1991). The nearest point is kept until a plane is above it. The new one is then on that
-//! plane, so that it is the same problem with the planes before, in one dimension less.
+//! hulls made easy" (1991). The nearest point is kept until it is below a plane. The new point then lies on
+//! that plane, so that it is the same problem with the planes before, in one dimension less.
 
 use crate::math::{DIM, Scalar, Vector};
 
-/// Planes that meet at less than this angle, in radians, have no line in common: f32 does not
-/// know where it is.
+/// Planes that meet at less than this angle, in radians, have no common line: its position is below the
+/// precision of f32.
 const PARALLEL: Scalar = 1.0e-5;
 
-/// The points `x` with `normal · x >= offset`, the normal being of unit length.
+/// The half-space of points `x` with `normal · x >= offset`. The normal has unit length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
     pub(super) normal: Vector,
@@ -24,9 +24,9 @@ impl Plane {
     }
 }
 
-/// Adds a plane through zero to planes that a velocity must not go into. Of planes whose normals have a dot
-/// product above `similarity` only the one that the velocity goes into most is kept: the line of two that are
-/// nearly parallel is noise.
+/// Adds a plane through zero to planes that a velocity must not point into. Of planes whose normals have a
+/// dot product above `similarity`, only the one that the velocity points into most is kept: the intersection
+/// line of nearly parallel planes is noise.
 pub(super) fn add_facing(planes: &mut Vec<Plane>, normal: Vector, velocity: Vector, similarity: Scalar) {
     match planes.iter_mut().find(|plane| plane.normal.dot(normal) > similarity) {
         Some(plane) if normal.dot(velocity) < plane.normal.dot(velocity) => plane.normal = normal,
@@ -35,17 +35,17 @@ pub(super) fn add_facing(planes: &mut Vec<Plane>, normal: Vector, velocity: Vect
     }
 }
 
-/// The intersection of some planes: orthogonal planes with the same intersection.
+/// The intersection of several planes, as orthogonal planes with the same intersection.
 #[derive(Clone, Copy, Default)]
 struct Flat {
     planes: [Option<Plane>; DIM],
 }
 
 impl Flat {
-    /// The part of a plane's normal along the flat, and the offset along it.
+    /// The part of a plane's normal along the flat, and the offset along this part.
     fn reduced(&self, plane: Plane) -> (Vector, Scalar) {
         let Plane { mut normal, mut offset } = plane;
-        // Once more for the rounding of the first time.
+        // The second round removes the rounding errors of the first.
         for _ in 0..2 {
             for own in self.planes.iter().flatten() {
                 let share = normal.dot(own.normal);
@@ -56,7 +56,7 @@ impl Flat {
         (normal, offset)
     }
 
-    /// The intersection with one more plane; `None` if that is parallel.
+    /// The intersection with one more plane; `None` if the plane is parallel.
     fn with(mut self, plane: Plane) -> Option<Self> {
         let (normal, offset) = self.reduced(plane);
         let length = normal.length();
@@ -77,19 +77,20 @@ impl Flat {
     }
 }
 
-/// The longest way out of an overlap, as a multiple of its depth: that of a wedge of 11 degrees. Larger moves
-/// a shape metres along two walls that are nearly parallel; smaller leaves it in sharp corners.
+/// The longest displacement out of an overlap, as a multiple of its depth, as in a wedge of 11 degrees. A
+/// larger value moves a shape metres along two walls that are nearly parallel; a smaller one leaves it in
+/// sharp corners.
 const LONGEST: Scalar = 10.0;
 
-/// The shortest way out of planes that a shape is below, and whether it leads out. Where there is no room it
-/// leads midway.
+/// The shortest displacement that moves a shape above all planes, and whether it does. Without enough room it
+/// leads to the middle.
 pub(super) fn way_out(planes: &[Plane], tolerance: Scalar) -> (Vector, bool) {
     let deepest = planes.iter().map(|plane| plane.offset).fold(0.0, Scalar::max);
     let out = nearest(planes, Vector::ZERO, tolerance).filter(|way| way.length() <= LONGEST * deepest);
     out.map_or_else(|| (compromise(planes), false), |way| (way, true))
 }
 
-/// The point nearest to `from` that is above all planes, or below them by `tolerance` at most. `None` if
+/// The point nearest to `from` that is above all planes, or below them by at most `tolerance`. `None` if
 /// there is none.
 pub(super) fn nearest(planes: &[Plane], from: Vector, tolerance: Scalar) -> Option<Vector> {
     nearest_on(Flat::default(), planes, from, tolerance)
@@ -109,8 +110,8 @@ fn nearest_on(flat: Flat, planes: &[Plane], from: Vector, tolerance: Scalar) -> 
 /// parallel planes.
 const ROUNDS: usize = 64;
 
-/// The point with the least sum of squares by which it is below planes that have no point in common: midway
-/// between two that face each other.
+/// The point with the least sum of squared depths below planes that have no common point: midway between two
+/// that face each other.
 fn compromise(planes: &[Plane]) -> Vector {
     let mut x = Vector::ZERO;
     let share = 1.0 / planes.len().max(1) as Scalar;

@@ -1,4 +1,4 @@
-//! The way of one character through the step to come.
+//! The motion of one character through the coming step.
 
 use bevy_ecs::prelude::*;
 
@@ -18,13 +18,13 @@ use crate::{
     spatial_query::NearPart,
 };
 
-/// The farthest that something moves into a character in one step, in metres, that it still makes way for.
+/// Maximum distance in metres that a body moves into a character in one step and is still avoided.
 const FARTHEST_PUSH: Scalar = 1.0;
 
-/// The time in which a drawn character makes up for most of a step, in seconds.
+/// The time in which a drawn character catches up with most of a climbed step, in seconds.
 const SMOOTHING: Scalar = 0.08;
 
-/// What a character does in the step to come.
+/// The actions of a character in the coming step.
 #[derive(Component, Clone, Debug, Default)]
 pub(super) struct CharacterPlan {
     pub(super) velocity: Vector,
@@ -43,7 +43,7 @@ pub(super) struct Push {
     pub(super) force: Vector,
 }
 
-/// What a character plans with.
+/// The data for planning.
 pub(super) struct Surroundings<'a> {
     pub(super) moves: &'a MoveAndSlide<'a, 'a>,
     pub(super) bodies: &'a BodiesAround<'a, 'a>,
@@ -53,13 +53,13 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// Whether a collider is that of a character in one of some layers.
+    /// Whether a collider belongs to a character in one of the given layers.
     pub(super) fn is_friend(&self, friends: LayerMask, entity: Entity) -> bool {
         is_friend(self.moves, self.bodies, friends, entity)
     }
 }
 
-/// Whether a collider is that of a character in one of some layers.
+/// Whether a collider belongs to a character in one of the given layers.
 pub(super) fn is_friend(
     moves: &MoveAndSlide,
     bodies: &BodiesAround,
@@ -72,7 +72,7 @@ pub(super) fn is_friend(
         && bodies.body_of(entity).is_some_and(|body| bodies.is_character(body))
 }
 
-/// The plan of one character as it is made.
+/// The plan of one character while it is made.
 pub(super) struct Planning<'a> {
     pub(super) around: &'a Surroundings<'a>,
     pub(super) walker: Walker<'a>,
@@ -83,9 +83,9 @@ pub(super) struct Planning<'a> {
     pub(super) input: CharacterInput,
     pub(super) gravity: Vector,
     pub(super) unit: Scalar,
-    /// Where its carrier brought it.
+    /// The position to which the carrier brought the character.
     pub(super) ridden_to: Vector,
-    /// The velocity that is not its own, at the start of the step.
+    /// The velocity at the start of the step that does not come from walking.
     pub(super) carried: Vector,
 }
 
@@ -130,7 +130,7 @@ impl Planning<'_> {
         self.state.visual_offset *= SMOOTHING / (SMOOTHING + time);
     }
 
-    /// Moves out of what it overlaps. Dynamic bodies that are no floor are left to the solver; of two
+    /// Moves out of overlaps. Overlaps with dynamic bodies that are no floor are left to the solver. Of two
     /// characters each moves by half of the overlap.
     fn recover(&mut self) {
         let (bodies, walker) = (self.around.bodies, &self.walker);
@@ -146,11 +146,11 @@ impl Planning<'_> {
         self.walker.position += out;
     }
 
-    /// Moves with what carries the character, as far as that did not come to where it was expected.
+    /// Follows the carrier, if its pose differs from the expected one.
     fn follow_carrier(&mut self) {
         let Some(carrier) = self.state.carrier else { return };
         let Some(body) = self.around.bodies.motion_of(carrier.body, self.around.time) else { return };
-        // A character that was put elsewhere is no longer carried.
+        // A character that was moved elsewhere is no longer carried.
         let is_there = (self.walker.position - carrier.rider).length() <= self.walker.mover.skin;
         if !is_there {
             self.state.carrier = None;
@@ -163,7 +163,7 @@ impl Planning<'_> {
         self.state.carrier = Some(Carrier { velocity, slip, ..carrier });
         if !is_as_expected || body.is_moving() {
             let way = body.position.0 + body.rotation * carrier.anchor - self.walker.foot();
-            // The share of the way that comes from the change of velocity, and not from a teleport.
+            // The share of the displacement that comes from the change of velocity, and not from a teleport.
             let by_change = way.dot(change) / (change.length_squared() * self.around.time);
             let by_change = if by_change > 0.0 { by_change.min(1.0) } else { 0.0 };
             let slid = (slip - carrier.slip) * (self.around.time * by_change);
@@ -175,9 +175,10 @@ impl Planning<'_> {
         self.ridden_to = self.walker.position;
     }
 
-    /// How fast the character slides on a carrier whose velocity changes. It gets the share of the change
-    /// that a body of the carrier's mass gives to one of its own, and friction then ends the slip by g h in a
-    /// step. So only what is light and jerks leaves it behind: a limb that kicks does not throw it.
+    /// The slip velocity of the character on a carrier whose velocity changes. The character gets the share
+    /// of the change that a body of the carrier's mass gives to a body of the character's mass. Friction then
+    /// reduces the slip by g h per step. So only light carriers that jerk leave the character behind: a
+    /// kicking limb does not throw it.
     fn slip_after(&self, carrier: Entity, slip: Vector, change: Vector) -> Vector {
         let (up, length) = (self.walker.up, change.length());
         let friction = self.gravity.length() * self.around.time;
@@ -192,13 +193,13 @@ impl Planning<'_> {
                 slip -= change * (1.0 - 1.0 / (1.0 + relative));
             }
         }
-        // It does not slide into what rises.
+        // The character does not slide into a rising carrier.
         slip -= up * slip.dot(up).min(0.0);
         let speed = slip.length();
         if speed > friction { slip * (1.0 - friction / speed) } else { Vector::ZERO }
     }
 
-    /// Moves by a displacement, passing through the colliders of a body.
+    /// Moves by a displacement, through the colliders of a body.
     fn shift_with(&mut self, body: Entity, way: Vector) -> bool {
         if way == Vector::ZERO {
             return true;
@@ -210,7 +211,7 @@ impl Planning<'_> {
         is_free
     }
 
-    /// The ground that a character on the ground touches, or that is below it.
+    /// The ground that a character on the ground touches, or the ground below it within reach.
     fn floor_below(&mut self) -> Option<Contact> {
         let find = |walker: &Walker| Walker::ground(&walker.contacts(None, true), walker.up);
         find(&self.walker).or_else(|| {
@@ -219,7 +220,7 @@ impl Planning<'_> {
         })
     }
 
-    /// Walks for a time, and stays on the ground if there is ground.
+    /// Walks for a time, and stays on the ground if it continues.
     fn walk(&mut self, own: Vector, time: Scalar, floor: Contact) {
         let up = self.walker.up;
         let normal = floor.floor.unwrap_or(up);
@@ -228,7 +229,7 @@ impl Planning<'_> {
         let motion = self.walker.walk(own * time, normal);
         let mut contacts = self.walker.contacts(None, true);
         if Walker::ground(&contacts, up).is_none() {
-            // The steepest slope down is followed at any speed.
+            // Slopes down to the steepest one are followed at any speed.
             let moved = self.walker.position - before;
             let across = (moved - up * moved.dot(up)).length();
             let cosine = self.walker.least_cosine;
@@ -257,7 +258,7 @@ impl Planning<'_> {
         }
     }
 
-    /// Falls through the step, and walks for the rest of it if it comes onto ground.
+    /// Falls through the step. If the character lands, it walks for the rest of the step.
     fn fall(&mut self, own: Vector) {
         let time = self.around.time;
         match self.walker.fly(&mut self.state.fall, own, self.gravity, time) {
@@ -274,7 +275,7 @@ impl Planning<'_> {
         }
     }
 
-    /// The state of a character that is not on the ground.
+    /// Records the state of a character that is not on the ground.
     fn note_air(&mut self, contacts: &[Contact]) {
         let up = self.walker.up;
         let steepness = |contact: &&Contact| contact.part.normal.dot(up);
@@ -288,7 +289,7 @@ impl Planning<'_> {
         self.state.carrier = None;
     }
 
-    /// The place of the character on its carrier, after a move that is not its own.
+    /// Updates the character's position on its carrier after a move that is not walking.
     pub(super) fn moved_on(&mut self, way: Vector) {
         let Some(carrier) = &mut self.state.carrier else { return };
         carrier.rider = self.walker.position;
@@ -305,7 +306,7 @@ impl Planning<'_> {
         self.note_ground(Some(ground));
     }
 
-    /// Notes the ground with its velocity.
+    /// Records the ground with its velocity.
     fn note_ground(&mut self, ground: Option<Contact>) {
         let state = &mut self.state;
         state.ground_entity = ground.map(|ground| ground.part.entity);
@@ -324,7 +325,7 @@ impl Planning<'_> {
         state.ground_velocity += self.around.bodies.surface_of(entity);
     }
 
-    /// Moves with the ground, as that moves in this step.
+    /// Moves with the motion of the ground in this step.
     fn ride(&mut self, time: Scalar) {
         let ground = self.state.ground_entity.filter(|_| self.state.is_grounded());
         let Some(ground) = ground else {
@@ -355,7 +356,7 @@ impl Planning<'_> {
                 }
             };
             self.shift_with(body, if slip == Vector::ZERO { way } else { way + slip * time });
-            // What was in the way moved it on the body.
+            // Obstacles moved the character on the body.
             let slid = self.walker.position - start - way;
             let anchor = if slid == Vector::ZERO { anchor } else { anchor + rotation.inverse() * slid };
             Carrier { body, position, rotation, anchor, rider: Vector::ZERO, velocity, slip }
@@ -369,7 +370,7 @@ impl Planning<'_> {
         self.moved_on(Vector::ZERO);
     }
 
-    /// Makes way for kinematic bodies that move into the character in this step.
+    /// Moves the character out of the way of kinematic bodies in this step.
     fn make_way(&mut self) {
         self.state.is_crushed = false;
         let position = self.walker.position;
@@ -421,7 +422,7 @@ impl Planning<'_> {
         self.plan.left = Some(CharacterLeftGround { character: self.entity, fall: self.state.fall });
     }
 
-    /// Reports what the character moved into, each collider once, and pushes dynamic bodies.
+    /// Reports the colliders that the character moved into, each once, and pushes dynamic bodies.
     fn note_hits(&mut self) {
         let character = self.entity;
         for (part, way) in core::mem::take(&mut self.walker.met) {
@@ -434,8 +435,8 @@ impl Planning<'_> {
         }
     }
 
-    /// Pushes a dynamic body: as a body of the character's mass would that loses its speed to it, by the
-    /// greatest force at most. Returns the impulse.
+    /// Pushes a dynamic body like a body of the character's mass that loses its speed to it, up to the
+    /// maximum force. Returns the impulse.
     fn push(&mut self, part: &NearPart, velocity: Vector) -> Scalar {
         let around = self.around;
         let mass = self.controller.mass;
@@ -444,7 +445,7 @@ impl Planning<'_> {
         if !(motion.kind.is_dynamic() && mass > 0.0) {
             return 0.0;
         }
-        // On the ground it pushes level, and does not lift.
+        // On the ground the character pushes horizontally, and does not lift.
         let up = self.walker.up;
         let is_level = self.state.is_grounded() && part.normal.dot(up).abs() < self.walker.least_cosine;
         let normal = if is_level { part.normal - up * part.normal.dot(up) } else { part.normal };
@@ -460,14 +461,13 @@ impl Planning<'_> {
         force * around.time
     }
 
-    /// Weighs on a dynamic body that the character stands on: on the same one as before, which had a
-    /// speed along `up`.
-    ///
+    /// Applies the weight of the character to the dynamic body below. `before` is the ground of the last
+    /// step, with its speed along `up`.
     fn weigh(&mut self, (before, speed): (Option<Entity>, Scalar)) {
         let load = core::mem::take(&mut self.state.load);
         let Some(ground) = self.state.ground_entity.filter(|_| self.state.is_grounded()) else { return };
         let Some(body) = self.around.bodies.body_of(ground) else { return };
-        // A flat foot touches at any of its points.
+        // A flat foot may touch at any of its points.
         let point = self.walker.below_foot(ground).unwrap_or(self.state.ground_point);
         let up = self.walker.up;
         let (mass, gravity) = (self.controller.mass, -self.gravity.dot(up));

@@ -21,8 +21,8 @@ use crate::{
 #[derive(Debug, Default)]
 pub struct CharacterControllerPlugin;
 
-/// The systems that move characters, in [`PhysicsSchedule`] before [`PhysicsStepSystems::First`]. What sets
-/// [`CharacterInput`](super::controller::CharacterInput), or the velocity of a platform, runs before.
+/// The systems that move characters, in [`PhysicsSchedule`] before [`PhysicsStepSystems::First`]. Systems
+/// that set [`CharacterInput`](super::controller::CharacterInput), or the velocity of a platform, run before.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CharacterSystems;
 
@@ -50,7 +50,7 @@ impl Plugin for CharacterControllerPlugin {
     }
 }
 
-/// Leaves the body of what is a character no longer to its app, at rest.
+/// Stops the body of a former character, and leaves it to the app.
 fn stop_characters(
     removed: On<Remove, CharacterController>,
     mut velocities: Query<&mut LinearVelocity>,
@@ -62,7 +62,7 @@ fn stop_characters(
     commands.entity(removed.entity).try_remove::<CharacterPlan>();
 }
 
-/// Leaves the body of what is a mover no longer to its app.
+/// Leaves the body of a former mover to the app.
 fn stop_movers(removed: On<Remove, DynamicMover>, mut commands: Commands) {
     commands.entity(removed.entity).try_remove::<MoverPlan>();
 }

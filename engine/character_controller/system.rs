@@ -1,7 +1,7 @@
-//! The systems that move characters: each plans its way through the step to come, then its body gets the
-//! velocity that takes it there.
+//! The systems that move characters: each character plans its motion through the coming step, then its body
+//! gets the velocity for this motion.
 //!
-//! All characters plan from the world as it is, so that neither their order nor the number of
+//! All characters plan from the same state of the world, so that neither their order nor the number of
 //! threads matters.
 
 use bevy_ecs::{prelude::*, query::QueryData};
@@ -122,7 +122,8 @@ fn plan(character: &mut CharacterItem, around: &Surroundings) {
     *character.plan = planning.plan;
 }
 
-/// Which colliders stop a character: those that its own layers interact with, without friends.
+/// Whether a collider stops a character: if the layers of the character interact with it, and it is no
+/// friend.
 pub(super) fn solidity<'a>(
     moves: &'a MoveAndSlide<'a, 'a>,
     bodies: &'a BodiesAround<'a, 'a>,
@@ -139,13 +140,13 @@ pub(super) fn solidity<'a>(
     }
 }
 
-/// How far below its position a shape reaches, as a negative height.
+/// The height of the lowest point of a shape relative to its position: negative below it.
 pub(super) fn feet_of(shape: &Collider, rotation: &Rotation, up: Vector) -> Scalar {
     let pose = world_pose(&Position(Vector::ZERO), rotation);
     let down = pose.rotation.inverse_rotate(vector_to_kernel(-up));
     match shape.native().support(down) {
         Some(point) => vector_from_kernel(pose.rotation.rotate(point)).dot(up),
-        // The box of a shape without support points.
+        // A shape without support points uses its box.
         None => {
             let aabb = shape.aabb(Vector::ZERO, *rotation);
             (aabb.center() - aabb.size() * 0.5 * up.abs()).dot(up)
@@ -153,12 +154,12 @@ pub(super) fn feet_of(shape: &Collider, rotation: &Rotation, up: Vector) -> Scal
     }
 }
 
-/// What is driven of a character.
+/// The components with which a character is driven.
 type Driven =
     (&'static BodyId, &'static mut CharacterPlan, &'static mut CharacterInput, &'static mut LinearVelocity);
 
-/// Gives the bodies of characters their velocities, pushes what they pushed, and sends their events in the
-/// order of their ids.
+/// Gives the bodies of characters their velocities, applies their pushes, and sends their events in order of
+/// ids.
 pub(super) fn drive_characters(
     mut characters: Query<Driven, Without<RigidBodyDisabled>>,
     mut others: Query<Forces, Without<CharacterPlan>>,
@@ -172,7 +173,7 @@ pub(super) fn drive_characters(
 ) {
     let mut plans = Vec::new();
     for (id, mut plan, mut input, mut velocity) in &mut characters {
-        // Taken, so that a character that is no longer planned for stops.
+        // The plan is taken, so that a character without a new plan stops.
         let plan = core::mem::take(&mut *plan);
         velocity.set_if_neq(LinearVelocity(plan.velocity));
         if input.jump != 0.0 {

@@ -1,15 +1,15 @@
-//! A velocity that does not go into any of some planes.
+//! Projection of a velocity so that it points into none of several planes.
 
 use super::planes::{Plane, nearest};
 use crate::math::{AdjustPrecision, DIM, Dir, Scalar, Vector, VectorF32};
 
-/// The share of a velocity that may go into a plane: the rounding of normals.
+/// The share of a velocity that may point into a plane: the rounding errors of normals.
 const TOLERANCE: Scalar = 2.0e-6;
 
-/// The velocity nearest to `v` that goes into none of the planes with the given outward normals. Zero if
+/// The velocity nearest to `v` that points into none of the planes with the given outward normals. Zero if
 /// there is no other, or if a component of `v` is infinite or NaN.
 ///
-/// So it slides along one plane, along the line of two, and stops in a corner of three.
+/// So a velocity slides along one plane or along the line of two planes, and stops in a corner of three.
 ///
 /// ```
 /// # use avian::{character_controller::move_and_slide::project_velocity, math::*};
@@ -23,7 +23,7 @@ pub fn project_velocity(v: Vector, normals: &[Dir]) -> Vector {
     along(v, &planes)
 }
 
-/// As [`project_velocity`], of planes through zero.
+/// As [`project_velocity`], for planes through zero.
 pub(super) fn along(v: Vector, planes: &[Plane]) -> Vector {
     let speed = v.length();
     if !(speed.is_finite() && speed > 0.0) {
@@ -34,7 +34,7 @@ pub(super) fn along(v: Vector, planes: &[Plane]) -> Vector {
 }
 
 /// As [`project_velocity`], by trying each face of the cone of free velocities. Its time grows with the third
-/// power of the number of planes; it is there to test the other.
+/// power of the number of planes; it tests the faster function.
 #[must_use]
 pub fn project_velocity_bruteforce(v: Vector, normals: &[Dir]) -> Vector {
     let speed = v.length();
@@ -53,7 +53,7 @@ pub fn project_velocity_bruteforce(v: Vector, normals: &[Dir]) -> Vector {
     for (i, n) in normals.iter().enumerate() {
         let on_plane = v - *n * v.dot(*n);
         offer(on_plane);
-        // In the plane, a second one leaves the apex only.
+        // In the plane, a second normal leaves only the apex.
         for m in normals[..i].iter().filter(|_| DIM == 3) {
             let across = *m - *n * m.dot(*n);
             let across = across.normalize_or_zero();
@@ -86,7 +86,7 @@ mod tests {
         #[test]
         fn both_ways_agree(v in prop::array::uniform3(-1.0f32..1.0), planes in prop::collection::vec(prop::array::uniform3(-1.0f32..1.0), 0..7)) {
             let normals: Vec<Dir> = planes.iter().filter_map(|p| Dir::new(of(p).f32()).ok()).collect();
-            // Planes that are nearly parallel have a line that rounding decides.
+            // Rounding decides the line of planes that are nearly parallel.
             let apart = |(i, n): (usize, &Dir)| normals[..i].iter().all(|m| vector(*m).dot(vector(*n)).abs() < 0.999);
             prop_assume!(normals.iter().enumerate().all(apart));
             let v = of(&v);

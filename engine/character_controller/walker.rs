@@ -1,8 +1,8 @@
-//! How a character moves among the colliders: along the ground, up steps, and through the air.
+//! The motion of a character among colliders: along the ground, up steps, and through the air.
 //!
-//! On the ground it moves by a horizontal way. Whatever is no floor is a vertical wall to it, so that the way
-//! is solved in the horizontal plane alone, and floors then tell how far it is lifted. So neither slopes nor
-//! walls change its speed.
+//! On the ground the input is a horizontal displacement. Surfaces that are not floors act as vertical walls.
+//! So the motion is solved in the horizontal plane alone, and floors then determine the lift. Neither slopes
+//! nor walls change the speed of the character.
 
 use super::{
     move_and_slide::MoveAndSlideConfig,
@@ -16,7 +16,7 @@ use crate::{
 };
 use bevy_ecs::prelude::*;
 
-/// The most sweeps of one move. What is left of it then is lost.
+/// Maximum number of sweeps per move. The rest of the move is lost.
 const SWEEPS: usize = 6;
 
 /// A character climbs a step that it walks into at up to 75 degrees from straight on: the cosine.
@@ -25,29 +25,29 @@ const CLIMBING: Scalar = 0.258_819;
 /// Normals with a greater dot product count as one: the cosine of 5 degrees.
 const SIMILAR: Scalar = 0.996_194_7;
 
-/// The share of its speed at which a character may part from what it still meets.
+/// The minimum share of its speed at which a character that touches a collider counts as parting from it.
 const PARTING: Scalar = 1.0e-3;
 
 /// A part that a character touches.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
     pub(super) part: NearPart,
-    /// The normal of the ground, if it is ground: of the face beside at an edge.
+    /// The normal of the ground, if the part is ground: at an edge the normal of the adjacent face.
     pub(super) floor: Option<Vector>,
 }
 
 impl Contact {
-    /// Whether it is ground at which the part's own normal is that of the ground.
+    /// Whether the part is ground, and its own normal is the ground normal.
     fn is_face(&self) -> bool {
         self.floor == Some(self.part.normal)
     }
 }
 
-/// A character that moves.
+/// A moving character.
 pub(super) struct Walker<'a> {
     pub(super) mover: Mover<'a>,
     pub(super) position: Vector,
-    /// From the position to the lowest point, along `up`: negative.
+    /// The lowest point relative to the position, along `up`: negative.
     pub(super) feet: Scalar,
     pub(super) up: Vector,
     /// The cosine of the steepest slope.
@@ -55,14 +55,15 @@ pub(super) struct Walker<'a> {
     pub(super) step_height: Scalar,
     pub(super) step_depth: Scalar,
     pub(super) recovery: Recovery,
-    /// What it moved into, with the displacement in a whole step that was stopped there.
+    /// The parts that the character moved into, each with the displacement in a whole step that was stopped
+    /// there.
     pub(super) met: Vec<(NearPart, Vector)>,
-    /// The last step climbed, and the height of all.
+    /// The last climbed step, and the total height of all climbed steps.
     pub(super) climbed: Option<(Entity, Scalar)>,
 }
 
 impl<'a> Walker<'a> {
-    /// One that climbs no steps, at a position, with the height of its feet along `up`, and its steepest
+    /// A walker that climbs no steps, at a position, with the height of its feet along `up`, and its steepest
     /// slope in radians.
     pub(super) fn new(
         mover: Mover<'a>,
@@ -97,18 +98,18 @@ impl Walker<'_> {
         v - self.up * v.dot(self.up)
     }
 
-    /// The lowest point of the character, below its position.
+    /// The lowest point of the character, directly below its position.
     pub(super) fn foot(&self) -> Vector {
         self.position + self.up * self.feet
     }
 
-    /// What it touches. One that walks stands on edges of ground, too.
+    /// The contacts of the character. A walking character also stands on edges of ground.
     pub(super) fn contacts(&self, stopped_by: Option<NearPart>, is_walking: bool) -> Vec<Contact> {
         let parts = self.mover.touching(self.position, stopped_by);
         parts.into_iter().map(|part| Contact { floor: self.floor_of(&part, is_walking), part }).collect()
     }
 
-    /// The normal of the ground at a part: none where it is too steep.
+    /// The ground normal at a part: `None` if it is too steep.
     pub(super) fn floor_of(&self, part: &NearPart, is_walking: bool) -> Option<Vector> {
         let rise = part.normal.dot(self.up);
         if rise >= self.least_cosine {
@@ -118,7 +119,7 @@ impl Walker<'_> {
         if !is_walking || rise < EDGE || height > self.step_height {
             return None;
         }
-        // From above the face beside the edge, if there is one.
+        // Casts a ray from above at the adjacent face of the edge.
         let aside = self.mover.skin.max(self.mover.slack());
         let inward = -self.horizontal(part.normal).normalize_or_zero();
         let from = part.points[0] + (inward + self.up) * aside;
@@ -135,7 +136,7 @@ impl Walker<'_> {
         (hit.normal.dot(self.up) >= self.least_cosine).then_some(hit.normal)
     }
 
-    /// The point of a collider that it stands on below the middle of its foot, if there is one.
+    /// The point of the ground collider below the middle of the foot, if there is one.
     pub(super) fn below_foot(&self, ground: Entity) -> Option<Vector> {
         let aside = self.mover.skin.max(self.mover.slack());
         let from = self.foot() + self.up * aside;
@@ -146,20 +147,20 @@ impl Walker<'_> {
         Some(from - self.up * hit.distance)
     }
 
-    /// The best ground of some contacts: the flattest face, or else an edge.
+    /// The best ground among the contacts: the flattest one, and a face before an equally flat edge.
     pub(super) fn ground(contacts: &[Contact], up: Vector) -> Option<Contact> {
         let rank = |contact: &&Contact| (contact.part.normal.dot(up), contact.is_face());
         let grounds = contacts.iter().filter(|contact| contact.floor.is_some());
         grounds.max_by(|a, b| rank(a).0.total_cmp(&rank(b).0).then(rank(a).1.cmp(&rank(b).1))).copied()
     }
 
-    /// How far a floor lifts on a horizontal way.
+    /// How far a floor lifts the character over a horizontal displacement.
     pub(super) fn lift(&self, floor: Vector, way: Vector) -> Scalar {
         -floor.dot(way) / floor.dot(self.up)
     }
 
-    /// Walks by a horizontal way, on a floor. Returns the way of the last sweep, as long as the
-    /// whole: it leads on.
+    /// Walks by a horizontal displacement, on a floor. Returns the motion of the last sweep, scaled to the
+    /// whole displacement, so that the motion can continue.
     pub(super) fn walk(&mut self, way: Vector, mut floor: Vector) -> Vector {
         let mut left: Scalar = 1.0;
         let mut stopped_by: Option<Sweep> = None;
@@ -195,12 +196,12 @@ impl Walker<'_> {
         motion
     }
 
-    /// The motion along walls and floors. Updates the floor that is walked on.
+    /// The motion along walls and floors. Updates the floor under the character.
     fn along_contacts(&mut self, contacts: &[Contact], way: Vector, floor: &mut Vector) -> Vector {
         let mut walls = Vec::new();
         for contact in contacts.iter().filter(|contact| !contact.is_face()) {
             let flat = self.horizontal(contact.part.normal);
-            // A flat ceiling is none.
+            // A flat ceiling does not count as a wall.
             if flat.length() > EDGE && flat.dot(way) < 0.0 {
                 add_facing(&mut walls, flat.normalize(), way, SIMILAR);
                 self.met.push((contact.part, way));
@@ -218,7 +219,7 @@ impl Walker<'_> {
             normal.dot(self.up) < -EDGE && normal.dot(motion) < -PARTING * motion.length()
         };
         if lift > 0.0 && contacts.iter().any(is_closing) {
-            // No way up: the slope is a wall.
+            // The ceiling blocks the slope, so the slope is a wall.
             let flat = self.horizontal(*floor).normalize_or_zero();
             walls.push(Plane::facing(flat));
             ahead = along(way, &walls);
@@ -227,7 +228,7 @@ impl Walker<'_> {
         ahead + self.up * lift
     }
 
-    /// Climbs the first step that the way leads into. Returns the share of the way that was walked.
+    /// Climbs the first step that the displacement leads into. Returns the walked share of the displacement.
     fn climb_one(&mut self, contacts: &[Contact], way: Vector) -> Option<Scalar> {
         let length = way.length();
         let is_ahead = |contact: &&Contact| {
@@ -239,7 +240,8 @@ impl Walker<'_> {
         self.climb(way, step)
     }
 
-    /// Up, ahead and down again: onto a step, if there is ground within its height, and room above.
+    /// Moves up, ahead and down again: onto a step, if there is ground within the step height, and room
+    /// above.
     fn climb(&mut self, way: Vector, step: Entity) -> Option<Scalar> {
         let length = way.length();
         let ahead = way / length;
@@ -256,7 +258,7 @@ impl Walker<'_> {
         let forward = room.min(length);
         let above = raised + ahead * forward;
         let hit = self.mover.sweep(above, -self.up * rise)?;
-        // A round foot would roll over edges that are higher.
+        // A round foot would roll over higher edges.
         if (hit.part.points[0] - self.foot()).dot(self.up) > self.step_height {
             return None;
         }
@@ -272,7 +274,7 @@ impl Walker<'_> {
         Some(forward / length)
     }
 
-    /// Moves down onto ground within reach. False if there is none.
+    /// Moves down onto ground within reach. Returns false if there is none.
     pub(super) fn snap(&mut self, reach: Scalar) -> bool {
         let Some(hit) = self.mover.sweep(self.position, -self.up * reach) else { return false };
         let before = self.position;
@@ -284,8 +286,8 @@ impl Walker<'_> {
         is_ground
     }
 
-    /// Falls for a time, moving by its own velocity as well, which is horizontal. Returns the ground it came
-    /// onto, with the speed, and the time left.
+    /// Falls for a time, with an additional horizontal velocity of its own. Returns the ground on which it
+    /// lands, the speed, and the time left.
     pub(super) fn fly(
         &mut self,
         fall: &mut Vector,
@@ -293,7 +295,7 @@ impl Walker<'_> {
         gravity: Vector,
         time: Scalar,
     ) -> Option<(Contact, Scalar, Scalar)> {
-        // The mean velocity of the step: the path is exact.
+        // The mean velocity of the step gives the exact path.
         let mean = *fall + gravity * (0.5 * time);
         let mut falling = mean;
         let mut left = time;
@@ -335,7 +337,7 @@ impl Walker<'_> {
         None
     }
 
-    /// Moves by a displacement, sliding along what it meets. Returns whether it went all the way.
+    /// Moves by a displacement, sliding along obstacles. Returns whether it completed the displacement.
     pub(super) fn shift(&mut self, way: Vector) -> bool {
         let mut left: Scalar = 1.0;
         let mut motion = way;

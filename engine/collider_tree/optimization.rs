@@ -5,9 +5,9 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
-/// How the trees of colliders are optimized after they moved.
+/// How the trees of colliders are optimized after colliders moved.
 ///
-/// Everything runs on one thread so far: trees are always optimized in place, within the step.
+/// All of it runs on one thread so far: trees are always optimized in place, within the step.
 #[derive(Resource, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -15,8 +15,8 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 pub struct ColliderTreeOptimization {
     /// The mode. [`TreeOptimizationMode::Adaptive`] by default.
     pub optimization_mode: TreeOptimizationMode,
-    /// Whether trees are optimized in place. True by default. False is to optimize a copy and swap it
-    /// in: *not yet*.
+    /// Whether trees are optimized in place. True by default. False optimizes a copy and swaps it in: *not
+    /// yet*.
     pub optimize_in_place: bool,
     /// Whether optimization may run in parallel with the rest of the step. True by default. *Not yet*.
     pub use_async_tasks: bool,
@@ -40,15 +40,17 @@ impl Default for ColliderTreeOptimization {
 pub enum TreeOptimizationMode {
     /// Moved leaves are removed and inserted again at the best place.
     Reinsert,
-    /// Moved leaves grow in place. When one in 16 has, the subtrees above them are rebuilt.
+    /// Moved leaves grow in place. When one leaf in 16 has grown, the subtrees above these leaves are
+    /// rebuilt.
     PartialRebuild,
-    /// Moved leaves grow in place. When one in 16 has, the tree is rebuilt.
+    /// Moved leaves grow in place. When one leaf in 16 has grown, the tree is rebuilt.
     FullRebuild,
-    /// Moved leaves grow in place. When one in 16 has, the boxes above them are refitted. When the sum of all
-    /// boxes has grown by a quarter, the tree is rebuilt, in part or in full by the share of moved leaves.
-    /// Where that share calls for reinsertion, this engine rebuilds in part: it costs about the same.
+    /// Moved leaves grow in place. When one leaf in 16 has grown, the boxes above these leaves are refitted.
+    /// When the sum of all boxes has grown by a quarter, the tree is rebuilt, in part or in full by the share
+    /// of moved leaves. At shares that call for reinsertion, this engine rebuilds in part, which costs about
+    /// the same.
     Adaptive {
-        /// Up to this share of moved leaves they are [reinserted](Self::Reinsert). 0.15 by default.
+        /// Up to this share of moved leaves, the leaves are [reinserted](Self::Reinsert). 0.15 by default.
         reinsert_threshold: f32,
         /// Up to this share of moved leaves the tree is [rebuilt in part](Self::PartialRebuild), above it [in
         /// full](Self::FullRebuild). 0.45 by default.

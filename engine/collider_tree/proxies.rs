@@ -1,4 +1,4 @@
-//! The collider trees, by what moves a collider, and the leaf of each collider.
+//! The collider trees, one per kind of motion, and the leaf of each collider.
 
 use super::optimization::TreeOptimizationMode;
 use bevy_platform::time::Instant;
@@ -39,19 +39,19 @@ struct Place {
 /// Minimum number of new leaves that are inserted in one build. Fewer are inserted one by one.
 const BULK: usize = 256;
 
-/// A tree is optimized when one in this many leaves has grown. A larger number refits more often, a smaller
-/// one leaves loose boxes that find more pairs.
+/// A tree is optimized when one in this many leaves has grown. A larger number leaves loose boxes that find
+/// more pairs; a smaller number refits more often.
 const GROWN: usize = 16;
 
-/// The whole tree is refitted when one in this many leaves has grown; with fewer only the boxes above
-/// grown leaves.
+/// The whole tree is refitted when one in this many leaves has grown. With fewer grown leaves only the boxes
+/// above them are refitted.
 const MOST: usize = 3;
 
 /// The cost of a tree is computed when one in this many leaves has moved.
 const MOVED: usize = 4;
 
-/// A tree is rebuilt when its cost has grown by this factor. Less rebuilds more often, more makes
-/// searches slower.
+/// A tree is rebuilt when its cost has grown by this factor. A smaller factor rebuilds more often; a larger
+/// one makes searches slower.
 const WORSE: f32 = 1.25;
 
 impl ProxyTable {
@@ -89,8 +89,8 @@ impl ProxyTable {
     /// Moves the leaves of the colliders in `moved` to their fat boxes, and optimizes the trees. The boxes in
     /// `fat` of all other colliders must be unchanged.
     ///
-    /// Unless the mode is to reinsert, leaves grow in place until one in [`GROWN`] has: the work of refitting
-    /// or rebuilding is then in proportion to what grew. Returns the time for optimizing.
+    /// Unless the mode is to reinsert, leaves grow in place until one in [`GROWN`] has grown: the work of
+    /// refitting or rebuilding is then in proportion to the grown leaves. Returns the time for optimizing.
     pub(crate) fn update(
         &mut self,
         moved: &BitSet,
@@ -178,8 +178,8 @@ impl ProxyTable {
         }
     }
 
-    /// The query for new pairs of a collider that moved. What is static forms pairs with what is dynamic or
-    /// kinematic. Pairs in which neither side has a body matter to sensors only, and are filtered later.
+    /// The query for new pairs of a collider that moved. Static colliders form pairs with dynamic and
+    /// kinematic ones. Pairs of two colliders without a body matter to sensors only, and are filtered later.
     pub(crate) fn mover(&self, id: u32, aabb: Aabb) -> Option<Mover> {
         let kind = self.kind(id)?;
         let dynamic = PairMask::only(TreeKind::Dynamic);
@@ -210,7 +210,7 @@ mod tests {
 
     const KIND: TreeKind = TreeKind::Dynamic;
 
-    /// How far the tree reaches beyond its leaves after the last `moved` of a row of a hundred boxes moved
+    /// How far the tree reaches beyond its leaves, after the last `moved` of a row of a hundred boxes moved
     /// to its middle.
     fn slack(moved: u32, mode: TreeOptimizationMode) -> f32 {
         let at = |x: u32| Aabb::new(Vector::X * x as f32, Vector::X * x as f32 + Vector::ONE);

@@ -15,8 +15,8 @@ use crate::dynamics::{
     tables::{Bodies, Colliders, Contacts, Tables},
 };
 
-/// Makes contacts of the pairs that the app added, and removes those that it removed, in the order of
-/// collider ids.
+/// Creates contacts for the pairs that the app added, and removes the contacts of pairs that it removed, in
+/// order of collider ids.
 pub(crate) fn apply_app_pairs(mut graph: ResMut<ContactGraph>, mut tables: Tables) {
     let (added, removed) = graph.bypass_change_detection().take_changes();
     for entities in removed {
@@ -44,7 +44,7 @@ pub(crate) fn apply_app_pairs(mut graph: ResMut<ContactGraph>, mut tables: Table
     wake_beset(&sleepers, &mut tables);
 }
 
-/// Whether two colliders have no contact and may have one.
+/// Whether two colliders have no contact yet, and may have one.
 fn is_possible(tables: &Tables, [a, b]: [u32; 2]) -> bool {
     let Tables { bodies, colliders, contacts, .. } = tables;
     let body = colliders.table.body(a);

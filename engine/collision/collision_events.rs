@@ -1,33 +1,36 @@
 //! Collision events: [`CollisionStart`] and [`CollisionEnd`], as messages and for observers.
 //!
-//! A collider with [`CollisionEventsEnabled`] reports when it begins and ceases to touch another collider. It
-//! may be inserted and removed at any time; it counts from the next step on.
+//! A collider with [`CollisionEventsEnabled`] reports when it starts and stops touching another collider. The
+//! component may be inserted and removed at any time; it takes effect in the next step.
 //!
 //! - A **message** is written once per pair, if either collider reports. Read it with a `MessageReader`.
-//! - An **entity event** is triggered for each of the two that reports, with that collider first. Observe it
-//!   on the collider's entity.
+//! - An **entity event** is triggered for each of the two colliders that reports, with that collider first.
+//!   Observe it on the collider's entity.
 //!
 //! Events are sent at the end of a step, in
 //! [`CollisionEventSystems`](super::narrow_phase::CollisionEventSystems): the messages, then the triggers,
-//! all starts before all ends, in the order of the engine's ids. The order is the same in every run and with
-//! any number of threads. Impulses are known then, and [`Collisions`](super::contact_types::Collisions) has
-//! the contacts.
+//! all starts before all ends, in order of the engine's ids. The order is the same in every run and with any
+//! number of threads. At this time impulses are known, and [`Collisions`](super::contact_types::Collisions)
+//! has the contacts.
 //!
-//! A collision also ends if a collider is despawned or its component removed. Such an end is sent at once,
-//! also while physics is paused; within a step it is sent with that step's events. The event then names an
-//! entity that may be gone; observers of the other collider run. A collision ends in the next step if a
-//! collider or its body is disabled, if the body is removed, or if layers forbid the pair from now on. The
-//! colliders of a disabled body touch nothing. Those of a removed body may begin to touch others one step
-//! later, as colliders without a body. Bodies that fall asleep do not end a collision, and a collider that
-//! moves to another body ends none with what it still touches.
+//! A collision also ends if a collider is despawned or its component is removed. This end is sent at once,
+//! even while physics is paused; within a step it is sent with the events of the step. The event may name an
+//! entity that no longer exists; observers of the other collider run.
 //!
-//! Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are
-//! 2 cm (times the length unit) apart. So what rattles on the ground ends no collision with it. Sensors touch
-//! while they overlap.
+//! A collision ends in the next step if a collider or its body is disabled, if the body is removed, or if
+//! layers no longer allow the pair. The colliders of a disabled body touch nothing. The colliders of a
+//! removed body become colliders without a body, and may start to touch others one step later. A body that
+//! falls asleep ends no collision. A collider that moves to another body ends no collision with a collider
+//! that it still touches.
 //!
-//! A pair is reported if one of its bodies is dynamic or kinematic, and a pair of colliders without bodies if
-//! one is a [`Sensor`](super::collider::Sensor). Colliders of static bodies are no pair with each other or
-//! with a collider without a body, sensor or not: a trigger zone is not told of the floor below it.
+//! Colliders touch from the step in which their surfaces meet or push each other, until the surfaces are 2 cm
+//! (times the length unit) apart. So an object that rattles on the ground ends no collision with the ground.
+//! Sensors touch while they overlap.
+//!
+//! A pair is reported if one of its bodies is dynamic or kinematic. A pair of colliders without bodies is
+//! reported if one is a [`Sensor`](super::collider::Sensor). Colliders of static bodies form no pairs with
+//! each other or with colliders without a body, sensors or not: a trigger zone does not report the floor
+//! below it.
 //!
 //! ```
 //! # use avian::prelude::*;
@@ -64,10 +67,10 @@ use crate::{
     },
 };
 
-/// Two colliders began to touch. The [module](self) lists the receivers and the time of sending.
+/// Two colliders started touching. The [module](self) lists the receivers and the time of sending.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct CollisionStart {
-    /// The first collider. An observer runs on this one.
+    /// The first collider, on which observers run.
     #[event_target]
     pub collider1: Entity,
     /// The second collider.
@@ -78,12 +81,12 @@ pub struct CollisionStart {
     pub body2: Option<Entity>,
 }
 
-/// Two colliders ceased to touch. The [module](self) lists the receivers and the time of sending.
+/// Two colliders stopped touching. The [module](self) lists the receivers and the time of sending.
 ///
-/// Entities may be gone: despawning one ends the collision.
+/// Entities may no longer exist: despawning a collider ends its collisions.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct CollisionEnd {
-    /// The first collider. An observer runs on this one.
+    /// The first collider, on which observers run.
     #[event_target]
     pub collider1: Entity,
     /// The second collider.
@@ -102,18 +105,18 @@ pub type OnCollisionStart = CollisionStart;
 #[deprecated(since = "0.4.0", note = "renamed to `CollisionEnd`")]
 pub type OnCollisionEnd = CollisionEnd;
 
-/// Has a collider report when it begins and ceases to touch others, by [`CollisionStart`] and
+/// Makes a collider report when it starts and stops touching other colliders, by [`CollisionStart`] and
 /// [`CollisionEnd`].
 ///
-/// If all colliders are to report, call `app.register_required_components::<Collider,
-/// CollisionEventsEnabled>()`.
+/// To make all colliders report, call
+/// `app.register_required_components::<Collider, CollisionEventsEnabled>()`.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default)]
 pub struct CollisionEventsEnabled;
 
-/// Makes one of the two events from a report, seen from one side.
+/// Makes one of the two events from a report, as seen from one of the colliders.
 macro_rules! seen_from {
     ($event:ident, $report:expr, $side:expr) => {{
         let (report, one, other): (&Report, usize, usize) = ($report, $side, 1 - $side);
@@ -126,12 +129,12 @@ macro_rules! seen_from {
     }};
 }
 
-/// Whether events are being sent. Collisions that observers of events end are reported after these events.
+/// Whether events are being sent. Collisions that end because of their observers are reported afterwards.
 #[derive(Resource, Default)]
 pub(crate) struct IsSending(pub(crate) bool);
 
-/// Sends what began and ended since the last call. Observers may despawn colliders, which ends
-/// more collisions.
+/// Sends the collisions that started and ended since the last call. Observers may despawn colliders, which
+/// ends more collisions.
 pub(crate) fn send_collision_events(world: &mut World) {
     if core::mem::replace(&mut world.resource_mut::<IsSending>().0, true) {
         return;
@@ -161,7 +164,7 @@ fn send(world: &mut World, Reports { started, ended, trackers }: Reports) {
         for side in [0, 1] {
             if is_reporting(world, report.colliders[side]) {
                 world.trigger(seen_from!(CollisionStart, report, side));
-                // The next observer sees what the commands of this one did.
+                // The commands of this observer are applied before the next observer runs.
                 world.flush();
             }
         }
@@ -176,12 +179,12 @@ fn send(world: &mut World, Reports { started, ended, trackers }: Reports) {
     }
 }
 
-/// Whether an entity exists, and reports. An observer may have despawned it just now.
+/// Whether an entity exists and reports. An observer may have just despawned it.
 fn is_reporting(world: &World, collider: Entity) -> bool {
     world.get_entity(collider).is_ok_and(|entity| entity.contains::<CollisionEventsEnabled>())
 }
 
-/// Writes the sets of colliders whose collisions changed.
+/// Updates the `CollidingEntities` of colliders whose collisions changed.
 fn update_trackers(world: &mut World, trackers: Vec<Entity>) {
     if trackers.is_empty() {
         return;

@@ -1,8 +1,8 @@
-//! [`CollisionHit`]: blows above a speed, for sound and damage.
+//! [`CollisionHit`]: impacts above a minimum speed, for sound and damage.
 //!
-//! A collider with [`CollisionHitsEnabled`] reports each blow in which it meets another collider faster than
-//! its [`min_speed`](CollisionHitsEnabled::min_speed). Blows are sent as messages and entity events with the
-//! [collision events](super::collision_events) of the step, before these.
+//! A collider with [`CollisionHitsEnabled`] reports each impact in which it meets another collider faster
+//! than its [`min_speed`](CollisionHitsEnabled::min_speed). Hits are sent as messages and entity events, just
+//! before the [collision events](super::collision_events) of the step.
 //!
 //! ```
 //! # use avian::prelude::*;
@@ -41,10 +41,10 @@ use crate::{
     math::{AdjustPrecision, Scalar, Vector, to_f32, vector_from_kernel, world_from_kernel},
 };
 
-/// A collider has been hit, or has hit another one.
+/// Two colliders hit each other.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
 pub struct CollisionHit {
-    /// The first collider. An observer runs on this one.
+    /// The first collider, on which observers run.
     #[event_target]
     pub collider1: Entity,
     /// The second collider.
@@ -53,14 +53,15 @@ pub struct CollisionHit {
     pub body1: Option<Entity>,
     /// The body of the second collider, if it has one.
     pub body2: Option<Entity>,
-    /// Where they met, in the world, in metres: the middle of the contact points.
+    /// The point of impact in the world, in metres: the mean of the contact points, weighted by their
+    /// impulses.
     pub point: Vector,
-    /// The unit normal there, from the first collider to the second.
+    /// The unit normal at the point, from the first collider to the second.
     pub normal: Vector,
-    /// The speed at which they approached along the normal as they met, m/s.
+    /// The approach speed along the normal at the impact, m/s.
     pub speed: Scalar,
-    /// The impulse along the normal, N·s. A body that stops gets its momentum; on several colliders
-    /// these share it.
+    /// The impulse along the normal, N·s. The impulse that stops a body is its momentum. If the body hits
+    /// several colliders at once, they share the impulse.
     pub impulse: Scalar,
 }
 
@@ -73,7 +74,7 @@ impl From<Blow> for CollisionHit {
 }
 
 impl CollisionHit {
-    /// The same seen from the other collider.
+    /// The same hit, seen from the other collider.
     pub fn flipped(&self) -> Self {
         Self {
             collider1: self.collider2,
@@ -86,14 +87,14 @@ impl CollisionHit {
     }
 }
 
-/// Has a collider report blows by [`CollisionHit`].
+/// Makes a collider report impacts by [`CollisionHit`].
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, Default, PartialEq)]
 pub struct CollisionHitsEnabled {
-    /// The speed of approach above which a blow is reported, m/s, times the
-    /// [`PhysicsLengthUnit`]. 1 by default. NaN reports none.
+    /// Impacts with a higher approach speed are reported, m/s, times the [`PhysicsLengthUnit`]. 1 by default.
+    /// NaN reports none.
     pub min_speed: Scalar,
 }
 
@@ -104,13 +105,13 @@ impl Default for CollisionHitsEnabled {
 }
 
 impl CollisionHitsEnabled {
-    /// Reports blows above a speed, m/s.
+    /// Reports impacts above a speed, m/s.
     pub fn above(min_speed: Scalar) -> Self {
         Self { min_speed }
     }
 }
 
-/// Notes the contacts of reporting colliders before they are solved.
+/// Records the contacts of reporting colliders before they are solved.
 pub(crate) fn note_approaches(
     settings: Query<&CollisionHitsEnabled>,
     unit: Res<PhysicsLengthUnit>,
@@ -169,12 +170,12 @@ fn approach(bodies: &BodyTable, colliders: &Colliders, id: u32, contact: &Contac
 }
 
 impl Approach {
-    /// The speed at which the bodies approached at a point, given from the first centre of mass.
+    /// The approach speed of the bodies at a point, given relative to the first centre of mass.
     fn speed(&self, normal: k::Vector, anchor: k::Vector) -> f32 {
         -self.parting(self.velocities, normal, anchor)
     }
 
-    /// The speed along the normal at which they part there with other velocities.
+    /// The separation speed along the normal at a point, for the given velocities.
     fn parting(&self, [a, b]: [Velocity; 2], normal: k::Vector, anchor: k::Vector) -> f32 {
         let arm = anchor - self.offset;
         normal.dot(b.linear + b.angular.cross(arm) - a.linear - a.angular.cross(anchor))
@@ -188,8 +189,8 @@ fn velocities(bodies: &BodyTable, pair: [u32; 2]) -> [Velocity; 2] {
     })
 }
 
-/// Makes hits of the fast contacts that got impulses, once their bodies do not approach any more, by half at
-/// least. A blow that takes several steps has the speed at which it began, and is one hit.
+/// Makes hits of fast contacts that got impulses, once at least half of the approach speed is gone. An impact
+/// that takes several steps is one hit, with its highest approach speed.
 pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contacts: ResMut<Contacts>) {
     let Contacts { table, hits: Hits { approaches, going, blows }, .. } =
         &mut *contacts.bypass_change_detection();
@@ -197,7 +198,7 @@ pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contac
         return;
     }
     let mut struck: Vec<ManifoldBlow> = solver.kernel.blows().collect();
-    // Stable: those of a contact stay in the order of time.
+    // The sort is stable: the blows of a contact stay in order of time.
     struck.sort_by_key(|blow| blow.contact);
     for approach in approaches.drain(..) {
         let contact = table.get(approach.contact);
@@ -227,7 +228,7 @@ pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contac
         let along = impulse.dot(normal);
         let mut movable = contact.bodies.into_iter().filter(|body| *body != NONE);
         if is_now && !(along > 0.0) && movable.any(|body| solver.kernel.was_struck(bodies.table.row(body))) {
-            // Another collider stopped it.
+            // Another collider stopped the body.
             continue;
         }
         going.push(GoingBlow { contact: id, colliders, speed, impulse, is_told });
@@ -237,7 +238,7 @@ pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contac
         let impulse = if along > 0.0 {
             along
         } else {
-            // Slow bodies are not struck. Impulses of their step hold their weight, too.
+            // Slow bodies get no blow. The impulses of their step also carry their weight.
             let arms = [anchor, anchor - offset];
             let stopping = change * mass_along(&solver, &bodies.table, contact.bodies, normal, arms);
             stopping.min(places.map(|place| place.impulse).sum())
@@ -253,8 +254,8 @@ pub(crate) fn find_hits(solver: Res<StepSolver>, bodies: Res<Bodies>, mut contac
     }
 }
 
-/// The mass that two bodies together have along a normal, at a point given from both centres of mass. 0 if
-/// neither moves.
+/// The effective mass of two bodies along a normal, at a point given relative to both centres of mass. 0 if
+/// neither body moves.
 fn mass_along(
     solver: &StepSolver,
     bodies: &BodyTable,
@@ -271,15 +272,15 @@ fn mass_along(
     if inverse_mass > 0.0 { 1.0 / inverse_mass } else { 0.0 }
 }
 
-/// Where a manifold got impulses.
+/// The place where a manifold got impulses.
 struct Struck {
     impulse: f32,
     normal: k::Vector,
-    /// The mean of its points, weighted by their impulses, from the first centre of mass.
+    /// The mean of the points, weighted by their impulses, relative to the first centre of mass.
     anchor: k::Vector,
 }
 
-/// Where a manifold got impulses in this step, if it did.
+/// The place where a manifold got impulses in this step, if it got any.
 fn struck_place(manifold: &Manifold) -> Option<Struck> {
     let points = &manifold.points()[..manifold.solved_points() as usize];
     let impulse = points.iter().fold(0.0, |sum, point| sum + point.total_impulse);
@@ -294,7 +295,7 @@ pub(crate) fn send_hits(world: &mut World) {
         return;
     }
     let blows = core::mem::take(&mut contacts.bypass_change_detection().hits.blows);
-    // Collisions that observers of hits end are sent with those of the step.
+    // Collisions that observers of hits end are sent with the collision events of the step.
     world.resource_mut::<IsSending>().0 = true;
     let hits: Vec<CollisionHit> = blows.into_iter().map(CollisionHit::from).collect();
     if let Some(mut messages) = world.get_resource_mut::<Messages<CollisionHit>>() {
@@ -305,7 +306,7 @@ pub(crate) fn send_hits(world: &mut World) {
             let entity = world.get_entity(seen.collider1);
             if entity.is_ok_and(|entity| entity.contains::<CollisionHitsEnabled>()) {
                 world.trigger(seen);
-                // The next observer sees what the commands of this one did.
+                // The commands of this observer are applied before the next observer runs.
                 world.flush();
             }
         }

@@ -29,7 +29,7 @@ use crate::{
 #[derive(Resource, Default)]
 pub(crate) struct NarrowPhaseBuffers(Vec<WorkerBuffers>);
 
-/// Manifolds of shapes that the kernel does not have: by parry, or those of collider types of the app.
+/// Manifolds of shapes that the kernel does not support: by parry, or by a collider type of the app.
 pub(crate) struct Foreign<'a, 'w, 's, 'c> {
     pub(crate) colliders: &'a Query<'w, 's, &'c Collider>,
     /// The entity of each collider.
@@ -86,7 +86,7 @@ pub(crate) fn update_contacts(
     diagnostics.narrow_phase += start.elapsed();
 }
 
-/// Applies the effects of contacts that got points or lost them: colours, islands, waking.
+/// Applies the effects of contacts that gained or lost points: colours, islands, waking.
 pub(crate) fn link_contacts(mut tables: Tables) {
     let changed = core::mem::take(&mut tables.contacts.changed);
     let mut parted = core::mem::take(&mut tables.contacts.parted);
@@ -102,17 +102,17 @@ pub(crate) fn link_contacts(mut tables: Tables) {
     }
 }
 
-/// Finds the contacts that began to touch in this step, once their impulses are known.
+/// Finds the contacts that started touching in this step, once their impulses are known.
 pub(crate) fn note_touching(unit: Res<PhysicsLengthUnit>, time: Res<Time<Physics>>, mut tables: Tables) {
     tables.contacts.is_before_solver = false;
     let Tables { bodies, contacts, .. } = &mut tables;
     let Contacts { table, nearing, met, changed, .. } = &mut **contacts;
     let step =
         StepEnd { bodies: &bodies.table, contacts: table, gap: touching_gap(&unit), dt: time.delta_secs() };
-    // Contacts of bodies at rest are updated once.
+    // Contacts of resting bodies are updated once.
     let is_updated = |id: u32| table.is_active(id) || changed.contains(id);
     for id in nearing.iter() {
-        // Others were removed.
+        // Other contacts of the set were removed.
         let is_near = table.is_live(id) && table.get(id).flags.has(ContactFlags::TOUCHING);
         if !is_near || is_updated(id) && step.touches(id) {
             met.insert(id);

@@ -1,6 +1,7 @@
-//! Contacts of collider types of the app: computed by the type before the narrow phase, which looks them up.
+//! Contacts of collider types of the app. The type computes them before the narrow phase, which looks them
+//! up.
 //!
-//! The narrow phase of all pairs is one call, and does not know types of the app.
+//! The narrow phase handles all pairs in one call, and does not know types of the app.
 
 use bevy_ecs::{prelude::*, system::StaticSystemParam};
 use core::any::TypeId;
@@ -27,12 +28,12 @@ use crate::{
 #[derive(Clone, Debug)]
 struct CustomContact {
     colliders: [u32; 2],
-    /// B in A's frame, where they were computed.
+    /// The pose of B in A's frame for which the manifolds were computed.
     pose: Pose,
     manifolds: Vec<LocalManifold>,
 }
 
-/// The manifolds of all pairs of collider types of the app, for the step at hand: by type, sorted by pair.
+/// The manifolds of all pairs of collider types of the app in this step: by type, sorted by pair.
 #[derive(Resource, Default)]
 pub(crate) struct CustomContacts(BTreeMap<TypeId, Vec<CustomContact>>);
 
@@ -115,7 +116,7 @@ fn to_local(manifold: &ContactManifold, first: &WorldPose, prediction: f32) -> O
     (local.count > 0).then_some(local)
 }
 
-/// What tells a point from others in the next step: its features, or its number where they are unknown.
+/// Identifies a point in the next step: by its features, or by its number if they are unknown.
 fn feature_of(point: &ContactPoint, number: u32) -> u32 {
     match (point.feature_id1.0, point.feature_id2.0) {
         (0, 0) => number,

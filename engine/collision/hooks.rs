@@ -18,14 +18,14 @@ use crate::dynamics::{
     tables::{Bodies, Colliders, Contacts},
 };
 
-/// Filters pairs and changes contacts, with the access of a system parameter.
+/// Filters pairs and changes contacts. The hooks are a read-only system parameter with access to the world.
 ///
-/// The methods run for colliders with [`ActiveCollisionHooks`], one pair at a time, in the order of the
-/// engine's ids. So they may depend on each other only through `commands`, which are applied within the step.
+/// The methods run for colliders with [`ActiveCollisionHooks`], one pair at a time, in order of the engine's
+/// ids. Calls can affect each other only through `commands`, which are applied within the step.
 ///
-/// Add them with [`PhysicsPlugins::with_collision_hooks`](crate::PhysicsPlugins::with_collision_hooks). An
-/// app has one set of hooks. They must not read [`Collisions`](super::contact_types::Collisions), which is
-/// being changed.
+/// Add hooks with [`PhysicsPlugins::with_collision_hooks`](crate::PhysicsPlugins::with_collision_hooks). An
+/// app has one set of hooks. Hooks must not read [`Collisions`](super::contact_types::Collisions), which are
+/// changing at that time.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -55,16 +55,17 @@ use crate::dynamics::{
 /// }
 /// ```
 pub trait CollisionHooks: ReadOnlySystemParam + Send + Sync {
-    /// Whether two colliders form a pair. Called when their boxes begin to overlap, if one of them has
-    /// [`ActiveCollisionHooks::FILTER_PAIRS`]. After `false` it is called again when a box has moved on.
+    /// Whether two colliders may form a pair. Called when their boxes begin to overlap, if one of the
+    /// colliders has [`ActiveCollisionHooks::FILTER_PAIRS`]. After `false` it is called again when one of the
+    /// boxes has moved.
     fn filter_pairs(&self, _collider1: Entity, _collider2: Entity, _commands: &mut Commands) -> bool {
         true
     }
 
-    /// Changes the contact of two colliders that touch: its points, normals, friction, restitution and
-    /// surface velocity. Called in every step in which one of their bodies is awake, if one has
-    /// [`ActiveCollisionHooks::MODIFY_CONTACTS`]. `false` drops the contact in this step: the colliders
-    /// do not touch.
+    /// Changes the contact of two touching colliders: its points, normals, friction, restitution and surface
+    /// velocity. Called in every step in which one of the bodies is awake, if one of the colliders has
+    /// [`ActiveCollisionHooks::MODIFY_CONTACTS`]. `false` drops the contact in this step: the colliders do
+    /// not touch.
     ///
     /// Manifolds that are not finite, or whose normal is not of unit length, are dropped. Without
     /// [`GENERATE_CONSTRAINTS`](super::contact_types::ContactPairFlags::GENERATE_CONSTRAINTS) the contact
@@ -77,7 +78,7 @@ pub trait CollisionHooks: ReadOnlySystemParam + Send + Sync {
 /// No hooks.
 impl CollisionHooks for () {}
 
-/// The [`CollisionHooks`] that run for a collider. None by default.
+/// The [`CollisionHooks`] methods that run for a collider. None by default.
 ///
 /// Immutable: insert it again to change it.
 #[repr(transparent)]
@@ -90,14 +91,14 @@ pub struct ActiveCollisionHooks(u8);
 
 bitflags::bitflags! {
     impl ActiveCollisionHooks: u8 {
-        /// [`CollisionHooks::filter_pairs`].
+        /// Runs [`CollisionHooks::filter_pairs`].
         const FILTER_PAIRS = 0b0000_0001;
-        /// [`CollisionHooks::modify_contacts`].
+        /// Runs [`CollisionHooks::modify_contacts`].
         const MODIFY_CONTACTS = 0b0000_0010;
     }
 }
 
-/// Asks the hooks about the pairs that were found.
+/// Runs the hooks that filter the found pairs.
 pub(crate) fn filter_pairs<H: CollisionHooks + 'static>(
     hooks: StaticSystemParam<H>,
     mut search: ResMut<PairSearch>,
@@ -120,7 +121,7 @@ pub(crate) fn filter_pairs<H: CollisionHooks + 'static>(
     });
 }
 
-/// Has the hooks change contacts, after the narrow phase.
+/// Runs the hooks that change contacts, after the narrow phase.
 pub(crate) fn modify_contacts<H: CollisionHooks + 'static>(
     hooks: StaticSystemParam<H>,
     bodies: Res<Bodies>,

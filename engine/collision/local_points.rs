@@ -1,8 +1,8 @@
-//! Points of manifolds that the kernel did not make.
+//! Reduces the contact points of manifolds that the kernel did not compute.
 
 use kernel::{manifold::LocalPoint, math::MAX_POINTS};
 
-/// Keeps the deepest point and those that spread widest, at most `MAX_POINTS`, and no two at one place.
+/// Keeps the deepest point and the points that spread widest, at most `MAX_POINTS`, without duplicates.
 ///
 /// Parry adds the closest points to the clipped ones, so a corner may appear twice.
 pub(crate) fn reduce(points: &mut Vec<LocalPoint>) {
@@ -14,7 +14,7 @@ pub(crate) fn reduce(points: &mut Vec<LocalPoint>) {
     points.swap(0, deepest);
     let first = points[0].point;
     let spread = points.iter().map(|p| (p.point - first).length_squared()).fold(0.0, kernel::math::max);
-    // Points closer than a thousandth of the spread are at one place.
+    // Points closer than a thousandth of the spread are duplicates.
     let least = spread * 1.0e-6;
     for chosen in 1..points.len() {
         let to_chosen = |i: usize| {

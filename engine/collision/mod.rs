@@ -1,7 +1,7 @@
 //! Collision detection: [colliders](collider), the [broad phase](broad_phase) that finds pairs of
 //! overlapping boxes, and the [narrow phase](narrow_phase) that computes contacts.
-//! [`Collisions`](contact_types::Collisions) gives contacts, [collision events](collision_events)
-//! tell of changes.
+//! [`Collisions`](contact_types::Collisions) gives access to contacts, and
+//! [collision events](collision_events) report changes.
 
 pub(crate) mod app_pairs;
 pub mod broad_phase;

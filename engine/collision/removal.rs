@@ -1,5 +1,5 @@
-//! Ends the collisions of colliders that are despawned or lose their shape: at once, or within a
-//! step at its end.
+//! Ends the collisions of colliders that are despawned or lose their shape: at once, or at the end of a step
+//! that is running.
 
 use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
@@ -23,7 +23,7 @@ pub(crate) fn watch(app: &mut App) {
         .add_observer(|on: On<Remove, CustomShape>, mut leaving: Leaving| leaving.lose_shape(on.entity));
 }
 
-/// All that knows of a collider's collisions.
+/// All state about the collisions of a collider.
 #[derive(SystemParam)]
 struct Leaving<'w, 's> {
     ids: Query<'w, 's, &'static ColliderId, Allow<Disabled>>,
@@ -43,8 +43,8 @@ impl Leaving<'_, '_> {
         (table.ids.is_live(id) && entities[id as usize] == entity).then_some(id)
     }
 
-    /// Ends the collisions of a collider whose id is discarded. Within a step, the removal of the
-    /// id ends them.
+    /// Ends the collisions of a collider whose id is discarded. During a step nothing is done here: the
+    /// removal of the id ends them.
     fn lose(&mut self, entity: Entity) {
         if !self.queue.is_within_step
             && let Some(id) = self.id_of(entity)
@@ -60,7 +60,7 @@ impl Leaving<'_, '_> {
             return self.queue.shapeless.push(id);
         }
         self.end(entity, id);
-        // It may get another shape before the next step, and then needs its pairs.
+        // The collider may get another shape before the next step, and then needs its pairs.
         self.tables.colliders.moved.insert(id);
     }
 
@@ -68,7 +68,8 @@ impl Leaving<'_, '_> {
         if self.tables.contacts.table.of_collider(id, &self.tables.colliders.table).next().is_none() {
             return;
         }
-        // The sets below are updated one by one. Making them anew would visit all contacts of the partners.
+        // The sets below are updated one by one. Rebuilding them would visit all contacts of the other
+        // colliders.
         let trackers = core::mem::take(&mut self.tables.contacts.reports.trackers);
         let first = self.tables.contacts.reports.ended.len();
         self.tables.end_contacts(id, |_, _| true);

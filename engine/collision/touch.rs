@@ -1,8 +1,8 @@
-//! Whether colliders touch. A contact has points before: from 2 cm before the surfaces meet, or if they may
-//! meet in the step at hand, since the solver stops them there.
+//! Whether colliders touch. A contact has points earlier: from 2 cm before the surfaces meet, or if they may
+//! meet in this step, because the solver stops the bodies there.
 //!
-//! Colliders begin to touch in the step in which a point gets an impulse, or their surfaces meet. They touch
-//! until the contact has no points any more. So a body that rattles on the ground touches it all the time.
+//! Colliders start to touch in the step in which a point gets an impulse or their surfaces meet. They touch
+//! until the contact has no points. So a body that rattles on the ground touches it all the time.
 
 use kernel::{
     contact::{Contact, ContactFlags, ContactTable, Manifold, ManifoldPoint},
@@ -11,11 +11,11 @@ use kernel::{
 
 use crate::dynamics::solver::config::PhysicsLengthUnit;
 
-/// Distance up to which surfaces have met, in metres times the length unit: more than the rounding errors of
-/// what lies on something without a force, and not to be seen.
+/// Maximum distance at which surfaces have met, in metres times the length unit. It exceeds the rounding
+/// errors of a body that rests on a surface without a force, and is too small to see.
 const GAP: f32 = 1.0e-4;
 
-/// Distance up to which surfaces have met, in units of length of the app.
+/// Maximum distance at which surfaces have met, in units of length of the app.
 pub(crate) fn touching_gap(unit: &PhysicsLengthUnit) -> f32 {
     GAP * unit.metres()
 }
@@ -24,7 +24,7 @@ pub(crate) fn touching_gap(unit: &PhysicsLengthUnit) -> f32 {
 pub(crate) struct StepEnd<'a> {
     pub(crate) bodies: &'a BodyTable,
     pub(crate) contacts: &'a ContactTable,
-    /// Distance up to which surfaces have met.
+    /// Maximum distance at which surfaces have met.
     pub(crate) gap: f32,
     /// The length of the step.
     pub(crate) dt: f32,
@@ -39,16 +39,16 @@ impl StepEnd<'_> {
     }
 
     fn meets(&self, contact: &Contact, manifold: &Manifold, point: &ManifoldPoint) -> bool {
-        // A sensor has only points where surfaces meet in the step.
+        // A sensor has points only where surfaces meet in the step.
         let is_sensor = contact.flags.has(ContactFlags::SENSOR);
         if is_sensor || point.impulse > 0.0 || point.total_impulse > 0.0 || point.separation <= self.gap {
             return true;
         }
-        // The solver gives an impulse to all others that meet.
+        // Other points that meet get an impulse from the solver.
         contact.is_inert() && point.separation + self.way_apart(contact, manifold, point) <= self.gap
     }
 
-    /// How far the surfaces of a contact without response parted at a point in the step.
+    /// The distance by which the surfaces of a contact without response separated at a point in the step.
     fn way_apart(&self, contact: &Contact, manifold: &Manifold, point: &ManifoldPoint) -> f32 {
         let velocity = |side: usize| match contact.bodies[side] {
             NONE => Velocity::default(),

@@ -1,8 +1,8 @@
-//! [`PairKey`]: two indices in any order.
+//! [`PairKey`]: an unordered pair of indices.
 
 use bevy_derive::{Deref, DerefMut};
 
-/// Two indices as one number, which is the same for both orders.
+/// Two indices as one number, which does not depend on their order.
 #[derive(Clone, Copy, Debug, Deref, DerefMut, PartialEq, Eq, Hash)]
 pub struct PairKey(pub u64);
 

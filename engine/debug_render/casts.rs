@@ -10,7 +10,7 @@ use crate::{
     spatial_query::{RayCaster, RayHits, ShapeCaster, ShapeHits},
 };
 
-/// Draws nothing, for a color that is not set.
+/// Draws nothing: the replacement of a color that is not set.
 const CLEAR: Color = Color::NONE;
 
 /// Draws ray casters that are enabled, with their last hits.

@@ -1,4 +1,4 @@
-//! The outlines of colliders. Each is computed once, and again when the collider changes.
+//! The outlines of colliders. Each outline is computed once, and again when its collider changes.
 
 use bevy_color::{Color, LinearRgba};
 use bevy_ecs::{change_detection::Tick, entity::EntityHashMap, prelude::*};
@@ -16,11 +16,11 @@ use crate::{
     dynamics::rigid_body::{RigidBody, sleeping::Sleeping},
 };
 
-/// The outline of each collider, and the tick at which the collider was as it is there.
+/// The outline of each collider, and the tick of the last change that the outline includes.
 #[derive(Default)]
 pub(super) struct Outlines(EntityHashMap<(Tick, Strips)>);
 
-/// The number of outlines of colliders that are gone before they are dropped.
+/// Maximum number of outlines of removed colliders that are kept.
 const SPARE: usize = 64;
 
 /// Draws the outlines of colliders.
@@ -56,12 +56,12 @@ pub(super) fn draw_colliders(
     }
 }
 
-/// The kinds of colliders that have a color of their own.
+/// The kinds of colliders with a separate color.
 #[derive(Clone, Copy)]
 enum Kind {
     Dynamic,
     Kinematic,
-    /// Without a body, too.
+    /// Includes colliders without a body.
     Static,
     Sensor,
 }
@@ -78,7 +78,7 @@ impl Kind {
         }
     }
 
-    /// The color of the kind. Without that of all colliders none is drawn.
+    /// The color of the kind. If the color of all colliders is `None`, no kind is drawn.
     fn color(self, gizmos: &PhysicsGizmos) -> Option<Color> {
         let own = match self {
             Self::Dynamic => None,

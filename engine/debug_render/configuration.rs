@@ -1,4 +1,4 @@
-//! What is drawn, and how.
+//! Settings of debug rendering.
 
 use bevy_color::{Color, palettes::css};
 use bevy_ecs::prelude::*;
@@ -7,11 +7,11 @@ use bevy_reflect::prelude::*;
 
 use crate::math::{Scalar, Vector};
 
-/// The settings of [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin), a group of gizmos. `None` draws
-/// nothing of a kind.
+/// The settings of [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin), a group of gizmos. A field that is
+/// `None` is not drawn.
 ///
-/// Change it in the `GizmoConfigStore`, or insert it when the app is built. The config of the group turns all
-/// drawing on and off, and has the width of lines.
+/// Change the settings in the `GizmoConfigStore`, or insert them when the app is built. The config of the
+/// group enables or disables all drawing, and has the width of lines.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -39,15 +39,15 @@ pub struct PhysicsGizmos {
     pub axis_lengths: Option<Vector>,
     /// Color of the bounding boxes of colliders. Not drawn by default.
     pub aabb_color: Option<Color>,
-    /// Color of the outlines of colliders. Orange by default. The next three replace it for colliders of a
-    /// kind, so that it is left for those of dynamic bodies.
+    /// Color of the outlines of colliders. Orange by default. The next three fields replace it for their
+    /// kinds of colliders, so that by default only colliders of dynamic bodies have it.
     pub collider_color: Option<Color>,
     /// Color of the outlines on kinematic bodies, instead of [`collider_color`](Self::collider_color).
     /// Blue by default.
     pub kinematic_color: Option<Color>,
     /// Color of the outlines on static bodies, and of colliders without a body. Gray by default.
     pub static_color: Option<Color>,
-    /// Color of the outlines of sensors, on whatever body. Green by default.
+    /// Color of the outlines of sensors, on any kind of body. Green by default.
     pub sensor_color: Option<Color>,
     /// Factors of hue, saturation, lightness and alpha for colors of sleeping bodies. `[1.0, 1.0, 0.4, 1.0]`
     /// by default: they are darker.
@@ -58,8 +58,8 @@ pub struct PhysicsGizmos {
     pub contact_normal_color: Option<Color>,
     /// Length of contact normals.
     pub contact_normal_scale: ContactGizmoScale,
-    /// The longest that normals with [`ContactGizmoScale::Scaled`] are drawn. 1 by default: the load of a
-    /// large body would reach out of the picture.
+    /// Maximum length of normals drawn with [`ContactGizmoScale::Scaled`]. 1 by default: the load of a large
+    /// body would extend beyond the picture.
     pub max_contact_normal_length: Option<Scalar>,
     /// Color of the lines from bodies to the anchors of joints. Pink by default.
     pub joint_anchor_color: Option<Color>,
@@ -67,17 +67,17 @@ pub struct PhysicsGizmos {
     pub joint_separation_color: Option<Color>,
     /// Color of the rays of ray casters. Red by default.
     pub raycast_color: Option<Color>,
-    /// Color of the points they hit. Yellow by default.
+    /// Color of the hit points of ray casters. Yellow by default.
     pub raycast_point_color: Option<Color>,
-    /// Color of the normals there. Pink by default.
+    /// Color of the hit normals of ray casters. Pink by default.
     pub raycast_normal_color: Option<Color>,
-    /// Color of the way of shape casters. Red by default.
+    /// Color of the path of shape casters. Red by default.
     pub shapecast_color: Option<Color>,
-    /// Color of their shapes, at the origin and where they hit. Light blue by default.
+    /// Color of the shapes of shape casters, at the origin and at hits. Light blue by default.
     pub shapecast_shape_color: Option<Color>,
-    /// Color of the points they hit. Yellow by default.
+    /// Color of the hit points of shape casters. Yellow by default.
     pub shapecast_point_color: Option<Color>,
-    /// Color of the normals there. Pink by default.
+    /// Color of the hit normals of shape casters. Pink by default.
     pub shapecast_normal_color: Option<Color>,
     /// Color of the boxes around simulation islands. Not drawn by default.
     pub island_color: Option<Color>,
@@ -218,8 +218,8 @@ impl PhysicsGizmos {
         Self { collider_color: Some(color), ..self }.with_kind_colors(None, None, None)
     }
 
-    /// Sets the colors of outlines on kinematic bodies, on static ones and of sensors. `None` is the color
-    /// of all others.
+    /// Sets the colors of outlines on kinematic bodies, on static bodies and of sensors. `None` uses the
+    /// color of all other colliders.
     pub fn with_kind_colors(
         mut self,
         kinematic: Option<Color>,
@@ -256,7 +256,7 @@ impl PhysicsGizmos {
         self
     }
 
-    /// Sets the longest that normals scaled by force are drawn, in metres. `None` is no limit.
+    /// Sets the maximum length of normals scaled by force, in metres. `None` is no limit.
     pub fn with_max_contact_normal_length(mut self, length: Option<Scalar>) -> Self {
         self.max_contact_normal_length = length;
         self
@@ -349,7 +349,7 @@ impl PhysicsGizmos {
     }
 }
 
-/// How one body or collider is drawn, instead of [`PhysicsGizmos`].
+/// The drawing of one body or collider, instead of [`PhysicsGizmos`].
 ///
 /// ```
 /// # use avian::prelude::*;

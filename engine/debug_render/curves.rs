@@ -5,10 +5,10 @@ use core::f32::consts::{PI, TAU};
 
 /// The number of lines that a full circle is drawn with.
 const CIRCLE: u32 = 32;
-/// Half the length of a half-space's boundary as it is drawn, in metres.
+/// Half the length of the drawn boundary of a half-space, in metres.
 pub(super) const FAR: f32 = 100.0;
 
-/// The closed outline of a convex polygon of any number of corners, two and one included, grown by a radius.
+/// The closed outline of a convex polygon with any number of corners, even one or two, grown by a radius.
 pub(super) fn rounded(mut corners: Vec<Vec2>, radius: f32) -> Vec<Vec2> {
     corners.dedup();
     while corners.len() > 1 && corners.first() == corners.last() {
@@ -32,7 +32,7 @@ pub(super) fn rounded(mut corners: Vec<Vec2>, radius: f32) -> Vec<Vec2> {
         let (from, to) = (outward(here - last), outward(next - here));
         let from = from.to_angle();
         let turn = (to.to_angle() - from).rem_euclid(TAU);
-        // Edges in line may turn back by rounding.
+        // Collinear edges may turn back by rounding.
         let turn = if turn > 1.5 * PI { 0.0 } else { turn };
         out.extend(arc(here, radius, from, from + turn));
     }

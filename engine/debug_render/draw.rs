@@ -40,7 +40,8 @@ pub(super) fn is_enabled(store: Option<Res<GizmoConfigStore>>) -> bool {
     store.is_some_and(|store| store.get_config::<PhysicsGizmos>().is_some_and(|(config, _)| config.enabled))
 }
 
-/// Where an entity is drawn: as its meshes are, or where physics has it if it has no transform.
+/// The pose at which an entity is drawn: its `GlobalTransform` like its meshes, or its physics pose if it has
+/// no transform.
 #[derive(QueryData)]
 pub(super) struct DrawnPose {
     entity: Entity,
@@ -52,7 +53,7 @@ pub(super) struct DrawnPose {
 }
 
 impl DrawnPoseItem<'_, '_> {
-    /// Whether the entity is shown, or hidden only because its lines take the place of its mesh.
+    /// Whether the entity is visible, or hidden only because lines replace its mesh.
     pub(super) fn is_shown(&self, hidden: &HiddenMeshes) -> bool {
         self.visibility.is_none_or(|visibility| visibility.get()) || hidden.hide(self.entity)
     }
@@ -65,8 +66,8 @@ impl DrawnPoseItem<'_, '_> {
     }
 }
 
-/// The rotation of an entity as it is drawn. Bevy's decomposition of a mirrored transform has the mirror at
-/// the x axis, and a turn for the rest. Colliders have the mirror where the scale has it.
+/// The rotation at which an entity is drawn. Bevy's decomposition of a mirrored transform puts the mirror at
+/// the x axis, and the rest into the rotation. Colliders have the mirror at the axis of the negative scale.
 fn drawn_rotation(transform: &GlobalTransform, place: Option<&ColliderTransform>) -> Quat {
     let scale = place.map_or(Vec3::ONE, |place| dim::point(place.scale));
     if scale.cmpge(Vec3::ZERO).all() {
@@ -82,7 +83,7 @@ fn drawn_rotation(transform: &GlobalTransform, place: Option<&ColliderTransform>
     }
 }
 
-/// How an entity is drawn.
+/// The drawing style of an entity.
 pub(super) fn style(gizmos: &PhysicsGizmos, own: Option<&DebugRender>) -> DebugRender {
     own.copied().unwrap_or(DebugRender {
         axis_lengths: gizmos.axis_lengths,
@@ -93,7 +94,7 @@ pub(super) fn style(gizmos: &PhysicsGizmos, own: Option<&DebugRender>) -> DebugR
     })
 }
 
-/// The color of what sleeps.
+/// The color while a body sleeps.
 pub(super) fn sleeping_color(color: Color, factors: Option<[f32; 4]>) -> Color {
     let Some([hue, saturation, lightness, alpha]) = factors else { return color };
     let c = Hsla::from(color);

@@ -18,10 +18,10 @@ use crate::{
     physics_transform::{Position, Rotation},
 };
 
-/// Draws points, shapes and casts of physics with `Gizmos<PhysicsGizmos>`.
+/// Draws points, shapes and casts with `Gizmos<PhysicsGizmos>`.
 ///
-/// Needs the group only, not [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin):
-/// `app.init_gizmo_group::<PhysicsGizmos>()`. Nothing is drawn at a pose that is not finite.
+/// Needs only the gizmo group, not [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin):
+/// `app.init_gizmo_group::<PhysicsGizmos>()`. A pose that is not finite draws nothing.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -38,7 +38,7 @@ pub trait PhysicsGizmoExt {
     /// Draws a line.
     fn draw_line(&mut self, a: Vector, b: Vector, color: Color);
 
-    /// Draws a line through points that are in the frame of a pose, and back to the first if it is `closed`.
+    /// Draws a line through points in the frame of a pose, and back to the first point if `closed`.
     fn draw_line_strip(
         &mut self,
         points: Vec<Vector>,
@@ -48,8 +48,7 @@ pub trait PhysicsGizmoExt {
         color: Color,
     );
 
-    /// Draws lines between pairs of vertices that are in the frame of a pose. Indices out of range
-    /// are left out.
+    /// Draws lines between pairs of vertices in the frame of a pose. Indices out of range are left out.
     fn draw_polyline(
         &mut self,
         vertices: &[Vector],
@@ -72,7 +71,7 @@ pub trait PhysicsGizmoExt {
         color: Color,
     );
 
-    /// Draws a ray, the points it hits and the normals there. `length_unit` is the size of a metre.
+    /// Draws a ray, its hit points and its hit normals. `length_unit` is the size of a metre.
     #[cfg(feature = "default-collider")]
     #[allow(clippy::too_many_arguments, reason = "Avian's signature")]
     fn draw_raycast(
@@ -87,7 +86,7 @@ pub trait PhysicsGizmoExt {
         length_unit: Scalar,
     );
 
-    /// Draws the way of a shape, the shape at its origin and where it hits, the points and the normals there.
+    /// Draws the path of a shape, the shape at its origin and at hits, the hit points and the hit normals.
     /// `length_unit` is the size of a metre.
     #[cfg(feature = "default-collider")]
     #[allow(clippy::too_many_arguments, reason = "Avian's signature")]

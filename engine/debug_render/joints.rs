@@ -26,9 +26,9 @@ use crate::{
 
 /// A constraint that [`PhysicsDebugPlugin`](super::PhysicsDebugPlugin) can draw.
 ///
-/// Add [`debug_render_constraint`] for a type of your own.
+/// Add the system [`debug_render_constraint`] for a custom type.
 pub trait DebugRenderConstraint<const N: usize>: EntityConstraint<N> {
-    /// What drawing needs from the world.
+    /// The data that drawing needs from the world.
     type Context: SystemParam;
 
     /// Draws the constraint between entities at the given poses.
@@ -42,7 +42,7 @@ pub trait DebugRenderConstraint<const N: usize>: EntityConstraint<N> {
     );
 }
 
-/// Draws all constraints of a type that are not disabled, and whose entities have transforms.
+/// Draws all enabled constraints of a type whose entities have transforms.
 pub fn debug_render_constraint<T: Component + DebugRenderConstraint<N>, const N: usize>(
     bodies: Query<&GlobalTransform>,
     constraints: Query<&T, Without<JointDisabled>>,
@@ -99,13 +99,13 @@ impl DrawnJoint {
         }
     }
 
-    /// The size of marks: half the longer way from a body to its anchor.
+    /// The size of marks: half of the longer distance from a body to its anchor.
     pub(super) fn size(&self) -> f32 {
         let arm = |side: usize| self.bodies[side].distance(self.frames[side].translation.into());
         0.5 * arm(0).max(arm(1))
     }
 
-    /// Draws an axis of the first frame between two positions, with a mark at each that is a limit.
+    /// Draws an axis of the first frame between two positions, and marks them if they are limits.
     pub(super) fn draw_slider(&self, axis: Vec3, limits: Option<DistanceLimit>, pen: &mut Pen) {
         let Some(axis) = axis.try_normalize() else { return };
         let (size, mut lines) = (self.size(), Strips::default());
@@ -176,7 +176,7 @@ pub(super) fn push_sector(lines: &mut Strips, axis: Vec3, zero: Vec3, min: f32, 
 /// The number of lines of an arc.
 pub(super) const ARC: u32 = 24;
 
-/// Draws a joint of the engine: its anchors, and by `draw` what it leaves free.
+/// Draws a joint of the engine: its anchors, and its free axes and limits by `draw`.
 pub(super) fn draw_kind(
     joint: &impl JointKind,
     (positions, rotations): ([Vector; 2], [Rotation; 2]),
@@ -185,7 +185,7 @@ pub(super) fn draw_kind(
     draw: impl FnOnce(&DrawnJoint, &mut Pen),
 ) {
     let Some(drawn) = DrawnJoint::new(joint, positions, rotations) else { return };
-    // What is tied is not held at a point.
+    // Coupled bodies are not held at a point.
     if joint.coupling().is_none() {
         drawn.draw_anchors(gizmos, config);
     }
@@ -194,8 +194,8 @@ pub(super) fn draw_kind(
     }
 }
 
-/// Implements drawing for kinds of joints, and lists their systems. Each comes with what draws its
-/// axes and limits.
+/// Implements drawing for kinds of joints, and lists their systems. Each kind comes with an expression that
+/// draws its axes and limits.
 macro_rules! drawn_kinds {
     ($(#[$doc:meta])* $list:ident: $($joint:ident => |$self:ident, $drawn:pat_param, $pen:pat_param| $draw:expr;)+) => {
         $(#[$doc])*

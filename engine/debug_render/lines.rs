@@ -17,7 +17,7 @@ impl Strips {
         self.0.push(Vec3::NAN);
     }
 
-    /// Adds a line that ends where it begins.
+    /// Adds a closed line.
     pub(super) fn push_closed(&mut self, points: impl IntoIterator<Item = Vec3>) {
         let first = self.0.len();
         self.0.extend(points);
@@ -25,7 +25,7 @@ impl Strips {
         self.0.push(Vec3::NAN);
     }
 
-    /// Adds lines of another frame.
+    /// Adds lines from another frame.
     #[cfg(feature = "default-collider")]
     pub(super) fn push_placed(&mut self, lines: &Self, place: &Affine3A) {
         self.0.extend(lines.0.iter().map(|point| place.transform_point3(*point)));
@@ -37,7 +37,7 @@ impl Strips {
         &self.0
     }
 
-    /// Draws the lines, which are in `frame`. Draws nothing if that is not finite.
+    /// Draws the lines, given in `frame`. Draws nothing if the frame is not finite.
     pub(super) fn draw(&self, frame: &Affine3A, color: LinearRgba, gizmos: &mut Gizmos<PhysicsGizmos>) {
         if !gizmos.config.enabled || !frame.is_finite() {
             return;

@@ -8,11 +8,11 @@ use bevy_mesh::{Mesh2d, Mesh3d};
 use super::{DebugRender, PhysicsGizmos};
 use crate::{collision::collider::ColliderMarker, dynamics::rigid_body::RigidBody};
 
-/// The visibility that a hidden mesh had.
+/// The visibility of a mesh before it was hidden.
 #[derive(Component)]
 pub(super) struct Hidden(Visibility);
 
-/// Tells entities whose meshes are hidden here from those that the app hides.
+/// Distinguishes meshes that debug rendering hides from meshes that the app hides.
 #[derive(SystemParam)]
 pub(super) struct HiddenMeshes<'w, 's> {
     hidden: Query<'w, 's, &'static Hidden>,
@@ -20,7 +20,7 @@ pub(super) struct HiddenMeshes<'w, 's> {
 }
 
 impl HiddenMeshes<'_, '_> {
-    /// Whether an entity or one above it is hidden here, and the app does not hide it.
+    /// Whether debug rendering hides an entity or an ancestor that the app does not hide.
     pub(super) fn hide(&self, entity: Entity) -> bool {
         let mut line = core::iter::once(entity).chain(self.parents.iter_ancestors(entity));
         line.any(|entity| self.hidden.get(entity).is_ok_and(|hidden| hidden.0 != Visibility::Hidden))
@@ -30,7 +30,8 @@ impl HiddenMeshes<'_, '_> {
 /// A mesh of a body or collider.
 type OfPhysics = (Or<(With<Mesh2d>, With<Mesh3d>)>, Or<(With<RigidBody>, With<ColliderMarker>)>);
 
-/// Hides and shows meshes as the settings say. A mesh that the app has made visible again since stays so.
+/// Hides and shows meshes according to the settings. A mesh that the app has made visible since stays
+/// visible.
 pub(super) fn hide_meshes(
     mut meshes: Query<(Entity, &mut Visibility, Option<&DebugRender>, Option<&Hidden>), OfPhysics>,
     store: Option<Res<GizmoConfigStore>>,

@@ -1,7 +1,7 @@
 //! Drawing of bodies, colliders, joints, contacts and queries as lines, with feature `debug-plugin`.
 //!
-//! [`PhysicsDebugPlugin`] draws what [`PhysicsGizmos`] asks for. [`DebugRender`] on an entity takes its place
-//! there. [`PhysicsGizmoExt`] has the same lines for systems of the app.
+//! [`PhysicsDebugPlugin`] draws according to [`PhysicsGizmos`]. [`DebugRender`] on an entity replaces these
+//! settings. [`PhysicsGizmoExt`] offers the same lines to systems of the app.
 
 #[cfg(feature = "default-collider")]
 mod casts;

@@ -17,15 +17,14 @@ use super::{
 };
 use crate::{collision::contact_types::views::ContactViews, schedule::PhysicsSystems};
 
-/// Draws bodies, colliders, joints, contacts and queries as lines, as [`PhysicsGizmos`] says, at the end
+/// Draws bodies, colliders, joints, contacts and queries as lines, according to [`PhysicsGizmos`], at the end
 /// of each frame.
 ///
-/// In [`PostUpdate`], after transforms are propagated and after physics if that runs there, so that lines are
-/// where the frame's meshes are. Entities that the app hides are not drawn. Without a window it draws nothing
-/// and does no harm.
+/// It runs in [`PostUpdate`], after transforms are propagated and after physics if physics runs there, so
+/// that lines match the meshes of the frame. Entities that the app hides are not drawn. Without a window it
+/// draws nothing and does no harm.
 ///
-/// An app with Bevy's default features draws gizmos. One that chooses features needs Bevy's
-/// `bevy_gizmos_render`.
+/// Apps with Bevy's default features draw gizmos. Apps that choose features need Bevy's `bevy_gizmos_render`.
 ///
 /// ```
 /// # use avian::prelude::*;

@@ -1,4 +1,4 @@
-//! The lines lie on the surfaces of shapes, and reach as far as these.
+//! Tests that lines lie on the surfaces of shapes, and reach as far as the shapes.
 
 use super::{
     dim::{
@@ -16,7 +16,7 @@ fn points(collider: &Collider) -> Vec<Vec3> {
     outline(collider).points().iter().copied().filter(|point| !point.is_nan()).collect()
 }
 
-/// Checks an outline, which may end `open` metres before the box of the shape.
+/// Checks an outline, which may end up to `open` metres inside the box of the shape.
 fn check(name: &str, collider: &Collider, tolerance: f32, open: f32) {
     let points = points(collider);
     assert!(!points.is_empty(), "{name} has no outline");

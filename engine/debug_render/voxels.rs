@@ -12,7 +12,7 @@ use kernel::math::DIM;
 /// A point of the grid, or a cell by its lowest corner.
 type Cell = [i64; DIM];
 
-/// Adds the edges at which the surface of the voxels bends: flat walls and the inside have none.
+/// Adds the edges at which the surface of the voxels bends: flat walls and interior edges are left out.
 pub(super) fn add_voxels(voxels: &Voxels, lines: &mut Strips) {
     let full = voxels.voxels().filter(|voxel| !voxel.state.is_empty());
     let cells: BTreeSet<Cell> = full.map(|voxel| cell(voxel.grid_coords)).collect();
@@ -62,7 +62,8 @@ fn edges(cells: &BTreeSet<Cell>) -> Vec<[Cell; 2]> {
     joined
 }
 
-/// The cells or points that differ from one by nothing or by `step` across an axis.
+/// The cells or points around a given one, which differ by nothing or by `step` along the axes besides
+/// `axis`.
 fn around(cell: Cell, axis: usize, step: i64) -> Vec<Cell> {
     let mut out = vec![cell];
     for other in (0..DIM).filter(|other| *other != axis) {
@@ -79,8 +80,8 @@ fn around(cell: Cell, axis: usize, step: i64) -> Vec<Cell> {
     out
 }
 
-/// Whether the surface bends at the edge that begins at a point of the grid. In the plane: whether it
-/// is the surface.
+/// Whether the surface bends at the edge that starts at a point of the grid. In 2D: whether the edge is part
+/// of the surface.
 fn bends(cells: &BTreeSet<Cell>, at: Cell, axis: usize) -> bool {
     let full: Vec<bool> = around(at, axis, -1).iter().map(|cell| cells.contains(cell)).collect();
     match full[..] {

@@ -24,7 +24,7 @@ impl Plugin for PhysicsEntityDiagnosticsPlugin {
     }
 }
 
-/// Numbers of entities in physics, as they were before the last step.
+/// Numbers of entities in physics, counted before the last step.
 #[derive(Resource, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct PhysicsEntityDiagnostics {
@@ -51,7 +51,7 @@ diagnostic_paths! {
     reset keep
 }
 
-/// The numbers are counted anew in each step.
+/// Keeps the old numbers, since each step counts them anew.
 fn keep(_: ResMut<PhysicsEntityDiagnostics>) {}
 
 fn count_entities(

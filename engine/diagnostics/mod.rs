@@ -1,13 +1,13 @@
-//! Timers and counters of physics, as resources and as diagnostics of Bevy.
+//! Timers and counters of physics, as resources and as Bevy diagnostics.
 //!
-//! Each part of the engine has a resource with what it counted and timed in the last step:
+//! Each part of the engine has a resource with its timers and counters of the last step:
 //! [`CollisionDiagnostics`], [`SolverDiagnostics`], [`ColliderTreeDiagnostics`], [`SpatialQueryDiagnostics`].
-//! They are always there.
+//! These resources always exist.
 //!
 //! With feature `bevy_diagnostic`, `PhysicsDiagnosticsPlugin` writes them to Bevy's `DiagnosticsStore` after
-//! each step, with totals and numbers of entities. With Bevy's feature `trace` every part of a step is a
-//! span: each is a system of [`PhysicsSchedule`](crate::schedule::PhysicsSchedule). With feature
-//! `diagnostic_ui`, `PhysicsDiagnosticsUiPlugin` shows them in the window.
+//! each step, together with the total step time and entity counts. With Bevy's feature `trace` every part of
+//! a step is a span, because each part is a system of [`PhysicsSchedule`](crate::schedule::PhysicsSchedule).
+//! With feature `diagnostic_ui`, `PhysicsDiagnosticsUiPlugin` shows them in the window.
 //!
 //! ```
 //! # use avian::{diagnostics::AppDiagnosticsExt, prelude::*};

@@ -1,6 +1,6 @@
 //! Paths of timers and counters.
 
-/// Names the timers and counters of a resource, as constants and for
+/// Defines the paths of a resource's timers and counters as constants, and implements
 /// [`PhysicsDiagnostics`](super::PhysicsDiagnostics).
 ///
 /// `reset` is the system that prepares the resource for a step.

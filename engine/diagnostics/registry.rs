@@ -15,7 +15,7 @@ pub enum PhysicsDiagnosticsSystems {
     WriteDiagnostics,
 }
 
-/// A resource with timers and counters that are known to Bevy's diagnostics by a path.
+/// A resource with timers and counters, each with a path for Bevy's diagnostics.
 pub trait PhysicsDiagnostics: Default + Resource<Mutability = Mutable> {
     /// Paths and values of the timers. They are written in milliseconds.
     fn timer_paths(&self) -> Vec<(&'static DiagnosticPath, Duration)> {
@@ -27,7 +27,7 @@ pub trait PhysicsDiagnostics: Default + Resource<Mutability = Mutable> {
         Vec::new()
     }
 
-    /// Prepares the resource for a step. By default all values become the default.
+    /// Prepares the resource for a step. The default implementation resets all values.
     fn reset(mut physics_diagnostics: ResMut<Self>) {
         *physics_diagnostics = Self::default();
     }
@@ -59,11 +59,11 @@ impl AppDiagnosticsExt for App {
     }
 }
 
-/// The registered types. Without a plugin that writes them they cost nothing.
+/// The registered types. They cost nothing unless a plugin writes them.
 #[derive(Resource, Default)]
 pub(super) struct Registered {
     types: Vec<TypeId>,
-    /// For each type with timers of parts of a step, their sum.
+    /// The sum of the timers of each type whose timers cover parts of a step.
     timers: Vec<fn(&World) -> Duration>,
     #[cfg(feature = "bevy_diagnostic")]
     pub(super) writers: Writers,
@@ -86,12 +86,12 @@ fn timed<T: PhysicsDiagnostics>(world: &World) -> Duration {
     resource.map_or(Duration::ZERO, |timers| timers.timer_paths().iter().map(|(_, time)| *time).sum())
 }
 
-/// Where the timers of a type run.
+/// Whether the timers of a type cover parts of a step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Within {
-    /// Parts of a step that no other timer counts.
+    /// The timers cover parts of a step that no other timer covers.
     Step,
-    /// Elsewhere.
+    /// The timers do not count towards the step.
     Nothing,
 }
 
@@ -103,7 +103,7 @@ pub(super) struct Writers {
     pub(super) are_added: bool,
 }
 
-/// The list. The first call adds it, and orders the sets.
+/// The list of registered types. The first call adds the list and orders the sets.
 pub(super) fn registered(app: &mut App) -> Mut<'_, Registered> {
     if !app.world().contains_resource::<Registered>() {
         app.init_resource::<Registered>().configure_sets(
@@ -117,7 +117,7 @@ pub(super) fn registered(app: &mut App) -> Mut<'_, Registered> {
     app.world_mut().resource_mut::<Registered>()
 }
 
-/// Adds the resource `T`, which something else resets. `false` if it was registered before.
+/// Adds the resource `T`, which is reset elsewhere. Returns `false` if it was registered before.
 pub(crate) fn list<T: PhysicsDiagnostics>(app: &mut App, within: Within) -> bool {
     app.init_resource::<T>();
     let mut registered = registered(app);
@@ -138,7 +138,7 @@ pub(crate) fn list<T: PhysicsDiagnostics>(app: &mut App, within: Within) -> bool
     true
 }
 
-/// Adds the system that writes a resource, and tells Bevy its paths.
+/// Adds the system that writes a resource, and registers its paths in Bevy.
 #[cfg(feature = "bevy_diagnostic")]
 fn write<T: PhysicsDiagnostics>(app: &mut App) {
     use bevy_diagnostic::{Diagnostic, RegisterDiagnostic};

@@ -1,4 +1,4 @@
-//! The length of whole steps.
+//! The duration of whole steps.
 
 use super::{PhysicsDiagnosticsSystems, Within, diagnostic_paths, list, registry::Registered};
 use crate::schedule::{PhysicsSchedule, PhysicsStepSystems};
@@ -34,13 +34,13 @@ impl Plugin for PhysicsTotalDiagnosticsPlugin {
     }
 }
 
-/// Number and time of steps.
+/// Number and duration of steps.
 #[derive(Resource, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct PhysicsTotalDiagnostics {
     /// Number of steps since the app started.
     pub step_number: u32,
-    /// Time for the last step: a run of [`PhysicsSchedule`], without reading and writing of `Transform`.
+    /// Duration of the last step: a run of [`PhysicsSchedule`], without reading and writing of `Transform`.
     pub step_time: Duration,
 }
 
@@ -53,14 +53,14 @@ diagnostic_paths! {
 }
 
 impl PhysicsTotalDiagnostics {
-    /// `avian/miscellaneous`: path of the time for the last step that no other timer counts, in milliseconds.
+    /// `avian/miscellaneous`: path of the time in the last step that no other timer covers, in milliseconds.
     pub const MISCELLANEOUS: &'static DiagnosticPath = &DiagnosticPath::const_new("avian/miscellaneous");
 }
 
-/// The number of steps grows, and the time is that of the last step.
+/// Keeps both values: the step number grows, and each step overwrites the time.
 fn keep(_: ResMut<PhysicsTotalDiagnostics>) {}
 
-/// When the present step began.
+/// When the current step began.
 #[derive(Resource, Default)]
 struct Start(Option<Instant>);
 
@@ -69,7 +69,7 @@ fn end_step(start: Res<Start>, mut total: ResMut<PhysicsTotalDiagnostics>) {
     total.step_time = start.0.map_or(Duration::ZERO, |start| start.elapsed());
 }
 
-/// Writes the time that no timer counts.
+/// Writes the time that no timer covers.
 fn write_rest(world: &World, mut diagnostics: Diagnostics) {
     let total = world.resource::<PhysicsTotalDiagnostics>().step_time;
     let rest = total.saturating_sub(world.resource::<Registered>().timed(world));

@@ -80,8 +80,8 @@ pub(crate) struct Census<'w, 's> {
     commands: Commands<'w, 's>,
 }
 
-/// Drains the queue: lost ids are removed, then queued bodies are added, removed or retyped, then queued
-/// colliders. Ids follow the order in which entities were queued, not the order of entities.
+/// Drains the queue: first removes lost ids, then adds, removes or retypes queued bodies, then processes
+/// queued colliders. Ids follow the order in which entities were queued, not the order of entities.
 pub(crate) fn drain_lifecycle(
     mut queue: ResMut<LifecycleQueue>,
     sleep: Option<Res<SleepRequests>>,
@@ -89,7 +89,8 @@ pub(crate) fn drain_lifecycle(
     mut joints: JointTables,
     mut census: Census,
 ) {
-    // Where sleep is mirrored, only bodies are left that woke since: what held them was despawned.
+    // With the sleeping plugin the set is kept: it holds only bodies that woke since the last step, because a
+    // body that held them was despawned.
     if sleep.is_none() {
         tables.bodies.table.flipped.clear();
     }
@@ -98,8 +99,8 @@ pub(crate) fn drain_lifecycle(
     let Contacts { changed, met, parted, .. } = &mut *tables.contacts;
     [changed, met, parted].into_iter().for_each(BitSet::clear);
     remove_lost(&mut queue, &mut tables, &mut joints, &mut census);
-    // Includes ids of entities that were despawned since the last step, so that a level that is replaced at
-    // once gets the same ids.
+    // This also recycles ids of entities that were despawned since the last step, so a level that is replaced
+    // in one go gets the same ids.
     tables.bodies.table.ids.recycle();
     tables.colliders.table.recycle_ids();
     tables.contacts.table.recycle_ids();
@@ -120,7 +121,7 @@ pub(crate) fn drain_lifecycle(
     colliders.extend(later.drain(..));
 }
 
-/// Removes entities that were despawned during the step, before observers and events of its end.
+/// Removes entities that were despawned during the step, before the observers and events at its end.
 pub(crate) fn remove_lost_late(
     mut queue: ResMut<LifecycleQueue>,
     mut tables: Tables,
@@ -136,7 +137,7 @@ pub(crate) fn remove_lost_late(
     remove_lost(&mut queue, &mut tables, &mut joints, &mut census);
     queue.is_within_step = false;
     queue.restart_log();
-    // These are queued for the next step anyway.
+    // These entities are queued for the next step anyway.
     queue.bereft.clear();
 }
 
@@ -174,7 +175,7 @@ fn remove_collider(id: u32, tables: &mut Tables) {
     colliders.forget(id);
 }
 
-/// Removes the contacts of a collider that may not be any more.
+/// Removes the contacts of a collider whose pairs are no longer allowed.
 fn drop_forbidden(id: u32, tables: &mut Tables) {
     tables.end_contacts(id, |manager, contact| {
         !may_collide(manager.bodies, manager.colliders, contact.colliders)
@@ -232,7 +233,7 @@ impl Census<'_, '_> {
                 let id = tables.bodies.table.add(kind, center, world_pose(position, rotation));
                 let dominance = dominance.map_or(0, |d| d.0);
                 tables.bodies.table[id].dominance = dominance;
-                // The flag stays set: dominance of static bodies is not read again.
+                // The flag stays set, because the dominance of static bodies is not read again.
                 tables.bodies.table.any_dominance |= dominance != 0;
                 put(&mut tables.bodies.entities, id, entity, Entity::PLACEHOLDER);
                 if let Some(kept) = tables.bodies.kept.get_mut(id as usize) {
@@ -260,7 +261,7 @@ impl Census<'_, '_> {
         }
     }
 
-    /// Queues the colliders of a body that was added, which belong to it from now on.
+    /// Queues the colliders of a body that was added. They belong to this body from now on.
     fn note_colliders(&self, body: Entity, queue: &mut LifecycleQueue) {
         queue.colliders.extend(self.colliders_of(body));
     }
@@ -329,7 +330,7 @@ impl Census<'_, '_> {
             queue.detached.insert(entity);
         }
         let inactive = is_detached && body_entity.is_some_and(|body| self.is_disabled(body));
-        // Its collisions as a part of the body end before it forms contacts on its own.
+        // Its collisions as a part of the old body end before it forms contacts on its own.
         if body == NONE && !inactive && queue.bereft.contains(&entity) {
             queue.later.push(entity);
             return;
@@ -356,13 +357,13 @@ impl Census<'_, '_> {
         };
         if !is_finite(&world) {
             queue.refused.insert(entity);
-            // If the body is not finite either, it has been reported.
+            // If the body is not finite either, the body has been reported.
             if !was_refused && (body != NONE || body_entity.is_none()) {
                 warn!("the place of the collider {entity} is not finite; it takes no part until it is");
             }
             return self.dismiss_collider(entity, id, tables);
         }
-        // A contact stores its bodies, so a collider with another body gets a new id.
+        // A contact stores its bodies, and a collider that changes its body gets a new id.
         if id != NONE && tables.colliders.table[id].def.body != body {
             remove_collider(id, tables);
         }
@@ -393,7 +394,7 @@ impl Census<'_, '_> {
         self.settle_reports(entity, id, tables);
     }
 
-    /// Reads whether a collider reports or tracks collisions, and which hooks it has.
+    /// Reads whether a collider reports or tracks collisions, and which hooks it uses.
     fn settle_reports(&self, entity: Entity, id: u32, tables: &mut Tables) {
         let (reports, tracks, hits, hooks) = self.reports.get(entity).unwrap_or_default();
         let has = |flag| hooks.is_some_and(|hooks| hooks.contains(flag));
@@ -426,22 +427,22 @@ impl Census<'_, '_> {
     }
 }
 
-/// Changes a collider in place, if its definition differs. Bodies that touch it wake, and pairs that its new
-/// layers forbid are removed.
+/// Changes a collider in place if its definition differs. Bodies that touch the collider wake, and pairs that
+/// its new layers forbid are removed.
 fn redefine(id: u32, def: ColliderDef, tables: &mut Tables) {
     let body = def.body;
     let old = &tables.colliders.table[id].def;
     if old.is_same(&def) {
         return;
     }
-    // A collider that becomes or ceases to be a sensor needs other pairs.
+    // A collider that becomes a sensor, or is no longer a sensor, needs other pairs.
     let repaired = old.layers != def.layers || old.flags != def.flags;
     let mut manager = tables.contact_manager();
     manager.wake_with_touching(body);
     manager.colliders.redefine(id, def, manager.bodies);
     if repaired {
         drop_forbidden(id, tables);
-        // New partners are found as for a collider that moved.
+        // New pairs are found as for a collider that moved.
         tables.colliders.moved.insert(id);
     }
     tables.contact_manager().reflag_of_collider(id);

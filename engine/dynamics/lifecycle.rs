@@ -1,8 +1,9 @@
-//! The life cycle: the only way in which bodies and colliders enter and leave the simulation.
+//! The life cycle: the only way for bodies and colliders to enter and leave the simulation.
 //!
 //! Observers only record *which* entities may have changed, and which ids lost their component. Once per step
 //! the queue is drained: the components of each queued entity are compared with the tables, and differences
-//! applied. So the order of changes does not matter, and changes that cancel each other cost nothing.
+//! are applied. Therefore the order of changes does not matter, and changes that cancel each other cost
+//! nothing.
 //!
 //! ```text
 //!   body       absent ──enters──▶ awake ⇄ asleep ──leaves──▶ absent        (static: neither awake nor asleep)
@@ -56,11 +57,11 @@ pub(crate) struct LifecycleQueue {
     pub(crate) lost_bodies: Vec<u32>,
     /// Collider ids whose component was removed or whose entity was despawned.
     pub(crate) lost_colliders: Vec<u32>,
-    /// All that was noted since the queue was last drained, for queries that follow it.
+    /// All notes since the queue was last drained, for queries that read the queue.
     pub(crate) log: NoteLog,
-    /// Entities that are about to lose a component: noted before that, and logged after.
+    /// Entities that are about to lose a component. They are recorded before the removal and logged after it.
     pub(crate) leaving: Vec<Note>,
-    /// Colliders that were refused because their pose is not finite, and reported.
+    /// Colliders that were refused and reported because their pose is not finite.
     pub(crate) refused: EntityIndexSet,
     /// Colliders of bodies that are not in the simulation. They use their own pose.
     pub(crate) detached: EntityIndexSet,
@@ -68,11 +69,12 @@ pub(crate) struct LifecycleQueue {
     pub(crate) bereft: EntityHashSet,
     /// Colliders that enter in the next step.
     pub(crate) later: Vec<Entity>,
-    /// Tick of the last search for mutated colliders.
+    /// Tick of the last scan for mutated colliders.
     pub(crate) drained: Tick,
-    /// Whether a step is between its drain and its last removals. Contacts stay in the tables meanwhile.
+    /// Whether a step is between its drain and its final removals. Contacts stay in the tables during that
+    /// time.
     pub(crate) is_within_step: bool,
-    /// Colliders that lost their shape since the drain. Their contacts end with the last removals.
+    /// Colliders that lost their shape since the drain. The final removals end their contacts.
     pub(crate) shapeless: Vec<u32>,
 }
 
@@ -83,18 +85,18 @@ pub(crate) enum Note {
     Collider(Entity),
 }
 
-/// Notes in the order of time. An entity may be noted several times.
+/// Notes in chronological order. An entity may be noted several times.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NoteLog {
     notes: Vec<Note>,
     number: u64,
 }
 
-/// Logs with fewer entries than this are not started anew.
+/// Logs with fewer entries are not restarted.
 const SHORT: usize = 1024;
 
-/// A log is started anew when it has this number of entries for each entity in the queue. Fewer let queries
-/// read the queue more often, more take more memory while physics is paused.
+/// A log is restarted when it has this number of entries per entity in the queue. A smaller value makes
+/// queries read the queue more often, a larger value takes more memory while physics is paused.
 const NOTES: usize = 8;
 
 impl NoteLog {
@@ -103,12 +105,12 @@ impl NoteLog {
         &self.notes
     }
 
-    /// The number of times that the log was started anew. What is noted before is in the queue only.
+    /// The number of restarts of the log. Earlier notes are only in the queue.
     pub(crate) fn number(&self) -> u64 {
         self.number
     }
 
-    /// Starts anew.
+    /// Restarts the log.
     pub(crate) fn restart(&mut self) {
         self.notes.clear();
         self.number += 1;
@@ -122,7 +124,7 @@ impl LifecycleQueue {
         self.record(note);
     }
 
-    /// Queues an entity that still has the component that it loses.
+    /// Queues an entity that still has the component that it is about to lose.
     fn note_leaving(&mut self, note: Note, commands: &mut Commands) {
         self.queue(note);
         if self.leaving.is_empty() {
@@ -131,7 +133,7 @@ impl LifecycleQueue {
         self.leaving.push(note);
     }
 
-    /// Starts the log anew.
+    /// Restarts the log.
     pub(crate) fn restart_log(&mut self) {
         self.log.restart();
         self.leaving.clear();
@@ -157,7 +159,7 @@ impl LifecycleQueue {
     }
 }
 
-/// Components that a body needs. They are required components, but may be removed.
+/// Components that a body needs. They are required components, but an app may remove them.
 pub(crate) type BodyEssentials = (
     Position,
     Rotation,
@@ -168,7 +170,7 @@ pub(crate) type BodyEssentials = (
     ComputedCenterOfMass,
 );
 
-/// The filter for bodies that have all of them.
+/// The filter for bodies with all of these components.
 pub(crate) type IsComplete = (
     With<Position>,
     With<Rotation>,
@@ -201,10 +203,10 @@ pub(crate) fn watch(app: &mut App) {
     queue.colliders.extend(colliders);
 }
 
-/// Components whose coming and going may change a body.
+/// Components whose insertion or removal may change a body.
 type OfBodies = (RigidBody, RigidBodyDisabled, Disabled);
 
-/// Components whose coming and going may change a collider.
+/// Components whose insertion or removal may change a collider.
 type OfColliders = (
     Collider,
     CustomShape,
@@ -219,8 +221,8 @@ type OfColliders = (
     Disabled,
 );
 
-/// Queues entities that come by a component, or lose it. One observer for many components: each is compiled
-/// like a system.
+/// Queues entities that get or lose a component of `B`. One observer serves many components, because each
+/// observer is compiled like a system.
 fn follow<Come: EntityEvent, B: Bundle>(app: &mut App, note: fn(Entity) -> Note) {
     app.add_observer(move |on: On<Come, B>, mut queue: ResMut<LifecycleQueue>| {
         queue.note(note(on.event_target()));
@@ -241,7 +243,7 @@ fn log_leaving(world: &mut World) {
     }
 }
 
-/// Queues colliders that were mutated, and moved ones without a body in the simulation.
+/// Queues mutated colliders, and moved colliders whose body is not in the simulation.
 pub(crate) fn note_changed_colliders(
     shapes: Query<(Entity, Ref<Collider>), With<ColliderId>>,
     places: Query<(Entity, Ref<ColliderTransform>), With<ColliderId>>,
@@ -363,9 +365,9 @@ mod tests {
         ]
     }
 
-    /// A hundred bodies that live for one frame each, with a child collider, for 300 frames without a step.
-    /// Queues hold only a few entries for each entity alive at one time, with or without the schedule that
-    /// hosts physics, and end up empty.
+    /// A hundred bodies with a child collider live for one frame each, for 300 frames without a step. Queues
+    /// hold only a few entries per entity alive at one time, with or without the schedule that hosts physics,
+    /// and are empty at the end.
     #[test]
     fn issue_queues_grew_with_all_that_lived_while_physics_was_paused() {
         for hosted in [false, true] {
@@ -399,7 +401,7 @@ mod tests {
         }
     }
 
-    /// Redefining a collider would recompute its manifolds instead of recycling them.
+    /// Redefining an unchanged collider would recompute its manifolds instead of recycling them.
     #[test]
     fn issue_writing_what_a_collider_is_already_dropped_its_kept_contacts() {
         use crate::dynamics::tables::Contacts;

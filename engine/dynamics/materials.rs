@@ -1,4 +1,5 @@
-//! Friction, restitution and margins of a collider: its own, else its body's, else the default.
+//! Friction, restitution and margins of a collider: from the collider, otherwise from its body, otherwise the
+//! default.
 
 use bevy_app::App;
 use bevy_ecs::{
@@ -88,8 +89,8 @@ impl SurfaceQuery<'_, '_> {
     }
 }
 
-/// Maximum friction coefficient, which stops any sliding. Larger ones could overflow to NaN when combined, or
-/// multiplied by an impulse of 0.
+/// Maximum friction coefficient, which stops all sliding. Larger values could overflow to NaN when combined,
+/// or when multiplied by an impulse of 0.
 const MAX_FRICTION: f32 = 1.0e9;
 
 fn material(friction: &Friction, restitution: &Restitution) -> Material {
@@ -135,11 +136,11 @@ type SurfaceParts = (
     Option<Ref<'static, SpeculativeMargin>>,
 );
 
-/// The filter for entities with one of them.
+/// The filter for entities with a surface component.
 type HasSurface = Or<(With<Friction>, With<Restitution>, With<CollisionMargin>, With<SpeculativeMargin>)>;
 
-/// Colliders in the tables, and their bodies, that lost a component of their surface since the last step, in
-/// the order of removal. Bevy's own record of removals lasts for two frames, and steps may be further apart.
+/// Colliders and bodies in the tables that lost a surface component since the last step, in the order of
+/// removal. Bevy's own record of removals lasts for two frames, and steps may be further apart.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct LostSurfaces(EntityIndexSet);
 
@@ -162,7 +163,7 @@ fn note_lost_surface(
     }
 }
 
-/// Updates surfaces in the table, of changed colliders, and of colliders that inherit from changed bodies.
+/// Updates surfaces in the table: for changed colliders, and for colliders that inherit from changed bodies.
 pub(crate) fn refresh_surfaces(
     surfaces: Query<SurfaceParts, HasSurface>,
     mut lost: ResMut<LostSurfaces>,
@@ -181,7 +182,7 @@ pub(crate) fn refresh_surfaces(
             margin.as_ref().map(ContiguousRef::changed_ticks_slice),
             speculative.as_ref().map(ContiguousRef::changed_ticks_slice),
         ];
-        // One component of the entity is enough to identify it.
+        // Any component identifies the entity.
         if let Some(any) = parts.into_iter().flatten().next() {
             since.rows(parts.map(|part| part.unwrap_or(any)), |row| entities.push(all[row]));
         }
@@ -206,7 +207,7 @@ pub(crate) fn refresh_surfaces(
                 continue;
             }
             let mut manager = tables.contact_manager();
-            // What rests on the surface may slide or bounce from now on.
+            // Bodies that rest on the surface may start to slide or bounce.
             manager.wake_with_touching(manager.colliders.body(id.0));
             manager.set_material(id.0, material);
             manager.set_facets(id.0, facets);

@@ -1,5 +1,5 @@
-//! Quarantine of bodies whose pose or velocity is not finite: the body is reset to its last pose, stopped and
-//! disabled, with one warning, before NaN spreads.
+//! Quarantine of bodies with a pose or velocity that is not finite. The body is reset to its last pose,
+//! stopped and disabled, with one warning, before NaN spreads.
 
 use bevy_ecs::prelude::*;
 use bevy_log::warn;
@@ -15,7 +15,8 @@ pub(crate) fn is_finite(pose: &WorldPose) -> bool {
     pose.position.is_finite_world() && pose.rotation.is_finite()
 }
 
-/// Stops and disables a body. `last` is its last finite pose. Without it the body keeps its pose.
+/// Stops and disables a body, and resets it to `last`, its last finite pose. Without `last` the body keeps
+/// its pose.
 pub(crate) fn quarantine(entity: Entity, last: Option<WorldPose>, commands: &mut Commands) {
     warn!("the position or velocity of {entity} is not finite; it is put back, stopped and disabled");
     let mut body = commands.entity(entity);

@@ -1,4 +1,4 @@
-//! Collisions that began and ended, and blows, until they are sent.
+//! Collisions that began or ended, and blows, until they are sent.
 
 use bevy_ecs::entity::{Entity, EntityIndexSet};
 use bevy_platform::collections::HashSet;
@@ -6,30 +6,30 @@ use kernel::{math as k, table::Velocity};
 
 use crate::math::{Scalar, Vector};
 
-/// Two colliders that began or ceased to touch.
+/// Two colliders that began or stopped touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Report {
     /// Both colliders, in the order of ids.
     pub(crate) colliders: [Entity; 2],
-    /// The body of each.
+    /// The body of each collider.
     pub(crate) bodies: [Option<Entity>; 2],
     /// Whether one of the colliders has `CollisionEventsEnabled`.
     pub(crate) is_sent: bool,
 }
 
-/// What is to be sent at the end of the step. Only colliders that report or track collisions are noted.
+/// Collisions to send at the end of the step. Only colliders that report or track collisions are recorded.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reports {
     /// Pairs that began to touch, by contact id.
     pub(crate) started: Vec<Report>,
-    /// Pairs that ceased to touch, in the order in which it was found.
+    /// Pairs that stopped touching, in the order in which this was detected.
     pub(crate) ended: Vec<Report>,
-    /// Colliders whose `CollidingEntities` may differ now.
+    /// Colliders whose `CollidingEntities` may have changed.
     pub(crate) trackers: EntityIndexSet,
 }
 
 impl Reports {
-    /// Drops pairs that ended and began again, as when a collider moves to another body.
+    /// Drops pairs that ended and began again in the step, for example when a collider moves to another body.
     pub(crate) fn drop_resumed(&mut self) {
         if self.started.is_empty() || self.ended.is_empty() {
             return;
@@ -47,21 +47,21 @@ impl Reports {
     }
 }
 
-/// A contact that may be struck, before it is solved.
+/// A contact that may become a blow, before it is solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach {
     pub(crate) contact: u32,
     pub(crate) colliders: [Entity; 2],
-    /// The centre of mass of the first body, and from there to that of the second.
+    /// The centre of mass of the first body, and the vector from it to the centre of mass of the second.
     pub(crate) center: k::WorldVector,
     pub(crate) offset: k::Vector,
     /// The velocities of both bodies.
     pub(crate) velocities: [Velocity; 2],
-    /// Slower blows are not reported.
+    /// Minimum speed of reported blows.
     pub(crate) min_speed: f32,
-    /// Whether a point closes faster.
+    /// Whether a point closes faster than `min_speed`.
     pub(crate) is_fast: bool,
-    /// The blow that is going on, if one is.
+    /// The ongoing blow of this contact, if any.
     pub(crate) blow: Option<GoingBlow>,
 }
 
@@ -70,15 +70,15 @@ pub(crate) struct Approach {
 pub(crate) struct GoingBlow {
     pub(crate) contact: u32,
     pub(crate) colliders: [Entity; 2],
-    /// The speed at which it began.
+    /// The closing speed at the start of the blow.
     pub(crate) speed: f32,
-    /// The impulses so far, on the second body, N·s.
+    /// The accumulated impulses on the second body, N·s.
     pub(crate) impulse: k::Vector,
-    /// Whether it was reported.
+    /// Whether the blow was reported.
     pub(crate) is_told: bool,
 }
 
-/// A fast contact whose bodies do not approach any more.
+/// A blow whose bodies no longer approach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blow {
     pub(crate) colliders: [Entity; 2],
@@ -89,11 +89,11 @@ pub(crate) struct Blow {
     pub(crate) impulse: Scalar,
 }
 
-/// The fast contacts of a step, and what became of them.
+/// The fast contacts of a step, and the resulting blows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hits {
     pub(crate) approaches: Vec<Approach>,
-    /// Blows that are not over, by contact.
+    /// Ongoing blows, by contact.
     pub(crate) going: Vec<GoingBlow>,
     pub(crate) blows: Vec<Blow>,
 }

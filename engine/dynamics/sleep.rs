@@ -21,7 +21,7 @@ use crate::{
     schedule::Physics,
 };
 
-/// Minimum number of steps at rest before a body sleeps. A body at the top of its flight, or one that was
+/// Minimum number of steps at rest before a body sleeps. A body at the top of its flight, or a body that was
 /// just released, is slow for a moment: with a threshold of 0.15 m/s for two steps of 1/60 s.
 const STEPS_OF_REST: f32 = 4.0;
 
@@ -69,7 +69,7 @@ impl Command for SleepBody {
     }
 }
 
-/// Wakes a body and its island at the start of the next step. If it is awake, it stays awake for another
+/// Wakes a body and its island at the start of the next step. An awake body stays awake for another
 /// [`TimeToSleep`]. An error if the entity is not a body.
 pub struct WakeBody(pub Entity);
 
@@ -111,8 +111,8 @@ pub(crate) fn watch_sleeping(app: &mut App) {
         });
 }
 
-/// Records bodies that the app puts to sleep. Bodies that sleep already are skipped: the engine inserted the
-/// component, and they may wake before the next step.
+/// Records bodies that the app puts to sleep. Bodies that already sleep are skipped: the engine inserted the
+/// component, and these bodies may wake before the next step.
 fn ask_to_sleep(
     on: On<Add, Sleeping>,
     ids: Query<&BodyId, Allow<Disabled>>,
@@ -128,8 +128,8 @@ fn ask_to_sleep(
     }
 }
 
-/// Applies the requests of the app: puts the islands of bodies to sleep or wakes them. Bodies that must
-/// not sleep wake.
+/// Applies the requests of the app: puts the islands of bodies to sleep or wakes them. Bodies that must not
+/// sleep wake.
 pub(crate) fn follow_requests(
     mut requests: ResMut<SleepRequests>,
     ids: Query<(&BodyId, Has<Sleeping>, Has<SleepingDisabled>)>,
@@ -137,7 +137,7 @@ pub(crate) fn follow_requests(
 ) {
     let SleepRequests { sleep, wake } = &mut *requests;
     for (entity, ()) in sleep.drain() {
-        // The component may have been added and removed again. Its state now counts.
+        // The component may have been added and removed again, so its current state counts.
         if let Ok((id, true, _)) = ids.get(entity)
             && id.0 != NONE
             && let Some(island) = tables.contact_manager().island_of(id.0)
@@ -164,7 +164,7 @@ pub(crate) fn follow_requests(
     }
 }
 
-/// Splits some of the islands that lost contacts, and puts islands to sleep whose bodies have all rested.
+/// Splits some of the islands that lost contacts, and puts islands to sleep if all their bodies have rested.
 pub(crate) fn sleep_islands(
     mut scan: ResMut<SleepBuffers>,
     time_to_sleep: Res<TimeToSleep>,
@@ -188,8 +188,8 @@ pub(crate) fn sleep_islands(
     }
 }
 
-/// Adds and removes [`Sleeping`] where a body fell asleep or woke. Observers of one body's `Sleeping` may
-/// despawn the next body before its turn.
+/// Adds and removes [`Sleeping`] on bodies that fell asleep or woke. Observers of one body's `Sleeping` may
+/// despawn the next body before it is processed.
 pub(crate) fn mirror_sleeping(mut tables: Tables, sleeping: Query<Has<Sleeping>>, mut commands: Commands) {
     let bodies = &mut *tables.bodies;
     for id in core::mem::take(&mut bodies.table.flipped) {

@@ -1,5 +1,5 @@
-//! State that persists between steps and is no component: the kernel's tables, as resources. Clones of them
-//! are a snapshot.
+//! State that persists between steps and is not a component: the kernel's tables, as resources. Clones of
+//! them are a snapshot.
 
 use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemParam};
 use kernel::{
@@ -26,12 +26,12 @@ pub(crate) struct Bodies {
     /// The last pose of each id's components, as read or written by the engine. A different pose is a change
     /// by the app. (The table's pose, of the centre of mass, would differ in the last bit.)
     pub(crate) seen: Vec<WorldPose>,
-    /// Velocities of bodies that fell asleep in motion, by id, as long as needed. Components keep them, and a
-    /// body wakes with its velocity, so that a stack continues as if it had not slept. In the kernel a
-    /// sleeping body has no velocity, since that would sweep its box and find contacts that wake it.
+    /// Velocities of bodies that fell asleep in motion, by id, as long as needed. Components keep these
+    /// velocities, and a body wakes with its velocity, so a stack continues as if it had not slept. In the
+    /// kernel a sleeping body has no velocity: a velocity would sweep its box and find contacts that wake it.
     pub(crate) kept: Vec<Velocity>,
-    /// Tick of the engine's last write of poses and velocities. Components with this tick were not
-    /// changed by the app.
+    /// Tick of the engine's last write of poses and velocities. The app has not changed components with this
+    /// tick.
     pub(crate) written: Tick,
     /// Tick of the last read of poses in this step. Newer changes were made by the app within the step.
     pub(crate) read: Tick,
@@ -39,11 +39,11 @@ pub(crate) struct Bodies {
     pub(crate) moved_within: Vec<(u32, Position, Rotation)>,
     /// Bodies with a solver row in this step, in the order of rows, from row 1.
     pub(crate) listed: Vec<u32>,
-    /// Pairs of bodies whose collisions joints turn off, with the number of these joints.
+    /// Pairs of bodies whose collisions are disabled by joints, with the number of these joints.
     pub(crate) apart: PairSet,
-    /// Entities that are looked up one by one. Kept for its buffer.
+    /// Entities that are looked up one by one. A reused buffer.
     pub(crate) some: Vec<Entity>,
-    /// Body ids. Kept for its buffer.
+    /// Body ids. A reused buffer.
     pub(crate) ids: Vec<u32>,
 }
 
@@ -61,14 +61,14 @@ impl Bodies {
         self.table.set_velocity(id, Velocity::default());
     }
 
-    /// Whether a pair of colliders may form a contact: [`may_collide`], and no joint turns it off.
+    /// Whether a pair of colliders may form a contact: [`may_collide`], and no joint disables it.
     pub(crate) fn may_pair(&self, colliders: &ColliderTable, pair: [u32; 2]) -> bool {
         let [a, b] = pair.map(|id| colliders.body(id));
         let is_apart = !self.apart.is_empty() && a != b && self.apart.contains(a, b);
         !is_apart && may_collide(&self.table, colliders, pair)
     }
 
-    /// Whether a change tick is from the app, not from the engine.
+    /// Whether the app, not the engine, made the change with this tick.
     pub(crate) fn is_set_by_app(&self, changed: Tick, since: Since) -> bool {
         since.is_new(changed) && changed != self.written
     }
@@ -81,19 +81,19 @@ pub(crate) struct Colliders {
     /// The entity of each id.
     pub(crate) entities: Vec<Entity>,
     pub(crate) trees: ProxyTable,
-    /// Colliders whose fat box changed since the last search for pairs.
+    /// Colliders whose enlarged box changed since the last search for pairs.
     pub(crate) moved: BitSet,
     /// Colliders whose pose must be updated before the next search for pairs.
     pub(crate) stale: BitSet,
-    /// The id of each entity, by the entity's index; outdated for entities without a collider.
+    /// The id of each entity, by the entity's index. Outdated for entities without a collider.
     by_entity: Vec<u32>,
     /// Colliders that report collisions.
     pub(crate) reporting: BitSet,
-    /// Colliders with a set of what they touch.
+    /// Colliders with `CollidingEntities`.
     pub(crate) tracking: BitSet,
-    /// Colliders whose pairs hooks filter.
+    /// Colliders whose pairs are filtered by hooks.
     pub(crate) filtering: BitSet,
-    /// Colliders whose contacts hooks change.
+    /// Colliders whose contacts are modified by hooks.
     pub(crate) modifying: BitSet,
     /// Colliders that report blows.
     pub(crate) hitting: BitSet,
@@ -113,7 +113,7 @@ impl Colliders {
         self.by_entity[index] = id;
     }
 
-    /// Forgets the entity of an id that is free again.
+    /// Removes the entity of a freed id.
     pub(crate) fn forget(&mut self, id: u32) {
         self.entities[id as usize] = Entity::PLACEHOLDER;
         self.reporting.remove(id);
@@ -143,14 +143,14 @@ pub(crate) struct Contacts {
     pub(crate) colors: ColorGraph,
     /// Contacts that got their first points or lost their last ones in this step's narrow phase.
     pub(crate) changed: BitSet,
-    /// Contacts that have points and did not touch yet: their colliders come near, or pass by.
+    /// Contacts with points that do not touch yet: their colliders approach or pass each other.
     pub(crate) nearing: BitSet,
-    /// Whether the narrow phase of this step has begun, and its impulses are not known: all contacts with
-    /// points count as touching.
+    /// Whether the narrow phase of this step has begun and its impulses are not known yet. Until then, all
+    /// contacts with points count as touching.
     pub(crate) is_before_solver: bool,
     /// Contacts that began to touch in this step, after the solver.
     pub(crate) met: BitSet,
-    /// Contacts that ceased to touch in this step's narrow phase.
+    /// Contacts that stopped touching in this step's narrow phase.
     pub(crate) parted: BitSet,
     /// Collisions to be sent.
     pub(crate) reports: Reports,
@@ -165,14 +165,14 @@ impl Contacts {
             && (self.is_before_solver || !self.nearing.contains(id))
     }
 
-    /// Whether they began to touch in this step.
+    /// Whether the colliders of a contact began to touch in this step.
     pub(crate) fn started(&self, id: u32) -> bool {
         let set = if self.is_before_solver { &self.changed } else { &self.met };
         set.contains(id) && self.touches(id)
     }
 }
 
-/// The islands. Absent without the island plugin: then no body sleeps.
+/// The islands. Absent without the island plugin, in which case no body sleeps.
 #[derive(Resource, Clone, Default)]
 pub(crate) struct PhysicsIslands(pub(crate) Islands);
 
@@ -191,7 +191,7 @@ impl Tables<'_> {
         self.contact_manager_and_reporter().0
     }
 
-    /// The same, and what notes collisions that begin and end.
+    /// The contact manager, and the reporter of collisions that begin and end.
     pub(crate) fn contact_manager_and_reporter(&mut self) -> (ContactManager<'_>, Reporter<'_>) {
         let Contacts { table: contacts, colors, reports, nearing, .. } = &mut *self.contacts;
         let Colliders { table: colliders, entities, reporting, tracking, .. } = &mut *self.colliders;
@@ -202,7 +202,7 @@ impl Tables<'_> {
         (ContactManager { bodies, colliders, contacts, colors, islands }, reporter)
     }
 
-    /// Removes the contacts of a collider that `is_gone` names, and notes the collisions that end.
+    /// Removes the contacts of a collider for which `is_gone` is true, and records the collisions that end.
     pub(crate) fn end_contacts(
         &mut self,
         collider: u32,
@@ -223,7 +223,7 @@ impl Tables<'_> {
 }
 
 impl Tables<'_> {
-    /// Turns off collisions of two bodies, until [`let_collide`](Self::let_collide) was called as often.
+    /// Disables collisions between two bodies, until [`let_collide`](Self::let_collide) is called as often.
     pub(crate) fn keep_apart(&mut self, [a, b]: [u32; 2]) {
         let count = self.bodies.apart.get(a, b).unwrap_or(0);
         self.bodies.apart.insert(a, b, count + 1);
@@ -236,7 +236,7 @@ impl Tables<'_> {
         }
     }
 
-    /// Turns collisions of two bodies on again.
+    /// Enables collisions between two bodies again.
     pub(crate) fn let_collide(&mut self, [a, b]: [u32; 2]) {
         match self.bodies.apart.remove(a, b) {
             None | Some(0 | 1) => {
@@ -249,7 +249,8 @@ impl Tables<'_> {
         }
     }
 
-    /// The colliders of one of two bodies, that is not static if possible. All contacts of the two have one.
+    /// The colliders of one of two bodies, preferably of a body that is not static. Every contact of the two
+    /// bodies has one of these colliders.
     fn movable_colliders(&self, [a, b]: [u32; 2]) -> Vec<u32> {
         let bodies = &self.bodies.table;
         let body = if bodies[a].kind == BodyKind::Static { b } else { a };
@@ -257,7 +258,7 @@ impl Tables<'_> {
     }
 }
 
-/// Notes collisions of colliders that report or track them.
+/// Records collisions of colliders that report or track them.
 pub(crate) struct Reporter<'a> {
     bodies: &'a [Entity],
     colliders: &'a [Entity],
@@ -268,8 +269,8 @@ pub(crate) struct Reporter<'a> {
 }
 
 impl Reporter<'_> {
-    /// Notes that a contact got its first points, or lost its last ones. Returns whether its colliders do not
-    /// touch any more.
+    /// Records that a contact got its first points, or lost its last points. Returns whether its colliders
+    /// stopped touching.
     pub(crate) fn note_points(&mut self, id: u32, contact: &Contact, status: Status) -> bool {
         match status {
             Status::Began => _ = self.nearing.insert(id),
@@ -282,7 +283,7 @@ impl Reporter<'_> {
         false
     }
 
-    /// Notes that a contact began or ended.
+    /// Records that a contact began or ended.
     #[inline]
     pub(crate) fn note(&mut self, contact: &Contact, status: Status) {
         let is_sent = contact.colliders.iter().any(|id| self.reporting.contains(*id));
@@ -310,7 +311,7 @@ impl Reporter<'_> {
 }
 
 /// Whether two colliders of different bodies may form a contact: both are active, their layers interact, and
-/// one of them belongs to a dynamic or kinematic body. Of two without a body one must be a sensor.
+/// one of them belongs to a dynamic or kinematic body. Of two colliders without a body one must be a sensor.
 pub(crate) fn may_collide(bodies: &BodyTable, colliders: &ColliderTable, pair: [u32; 2]) -> bool {
     let [a, b] = pair.map(|id| &colliders[id].def);
     let moves = |body: u32| body != NONE && bodies[body].kind != BodyKind::Static;
@@ -319,8 +320,8 @@ pub(crate) fn may_collide(bodies: &BodyTable, colliders: &ColliderTable, pair: [
     active && (moves(a.body) || moves(b.body) || detects) && a.layers.interacts_with(b.layers)
 }
 
-/// Whether looking up the wanted entities is cheaper than iterating the queries: they are less than a quarter
-/// of all. `all` are the size hints of the queries.
+/// Whether looking up the wanted entities is cheaper than iterating over the queries: they are less than a
+/// quarter of all entities. `all` are the size hints of the queries.
 pub(crate) fn is_minority<const N: usize>(wanted: usize, all: [(usize, Option<usize>); N]) -> bool {
     4 * wanted < all.iter().map(|hint| hint.1.unwrap_or(0)).sum()
 }

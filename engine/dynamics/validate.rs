@@ -1,5 +1,5 @@
-//! Checks at the end of every step that tables and components agree, with the feature `validate`. They
-//! scan everything.
+//! Checks at the end of every step that tables and components agree, with the feature `validate`. The checks
+//! scan all tables.
 
 use bevy_app::App;
 use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
@@ -71,8 +71,9 @@ fn validate(mut audit: Audit) {
 }
 
 impl Audit<'_, '_> {
-    /// Every id belongs to its entity, and every body that should be in the simulation is there with its
-    /// type. Entities that changed since the queue was drained are skipped: the next step handles them.
+    /// Checks that every id belongs to its entity, and that every entity that should be a simulated body is
+    /// in the table with its type. Entities that changed since the queue was drained are skipped: the next
+    /// step handles them.
     fn check_bodies(&self) {
         let bodies = &*self.tables.bodies;
         let mut found = 0;
@@ -157,9 +158,9 @@ impl Audit<'_, '_> {
         assert_eq!(listed.sum::<usize>(), attached, "bodies list their colliders");
     }
 
-    /// Joints in the kernel are those of entities, and hold the bodies that these name. A joint waits only
-    /// for a body that is not in the simulation, or was reported. Joints that changed since the queue was
-    /// drained are skipped.
+    /// Checks that joints in the kernel belong to entities, and hold the bodies that these entities name. A
+    /// joint that is not in the kernel waits for a body that is not in the simulation, or was reported.
+    /// Joints that changed since the queue was drained are skipped.
     fn check_joints(&self) {
         let (bodies, joints) = (&*self.tables.bodies, &*self.joints);
         let constraints = bodies.table.constraints(ConstraintKind::Joint);

@@ -1,4 +1,4 @@
-//! Velocities of 2D bodies in the three dimensions of `Transform`.
+//! Converts velocities of 2D bodies to the three dimensions of `Transform`.
 
 use bevy_math::Vec3;
 
@@ -7,7 +7,7 @@ use crate::{
     math::AsF32,
 };
 
-/// The velocity in the XY plane.
+/// The linear velocity in the XY plane.
 pub(super) fn linear_vec3(velocity: LinearVelocity) -> Vec3 {
     velocity.0.f32().extend(0.0)
 }

@@ -1,4 +1,4 @@
-//! Velocities of 3D bodies in the precision of `Transform`.
+//! Converts velocities of 3D bodies to the precision of `Transform`.
 
 use bevy_math::Vec3;
 
@@ -7,12 +7,12 @@ use crate::{
     math::AsF32,
 };
 
-/// In single precision.
+/// The linear velocity in single precision.
 pub(super) fn linear_vec3(velocity: LinearVelocity) -> Vec3 {
     velocity.0.f32()
 }
 
-/// In single precision.
+/// The angular velocity in single precision.
 pub(super) fn angular_vec3(velocity: AngularVelocity) -> Vec3 {
     velocity.0.f32()
 }

@@ -1,10 +1,10 @@
-//! Keeps physics independent of the transforms that are drawn between ticks.
+//! Keeps physics independent of the eased transforms that are drawn between ticks.
 //!
-//! Easing overwrites `Transform`, the very component that physics reads. Before the first tick of a frame,
-//! the values of the last tick are put back where the `Transform` still has the bits that easing wrote. All
-//! else was written by the app: it stays, and easing starts anew from it. This is decided for each axis of
-//! translation and scale, and for the rotation as a whole. So sorting sprites by `z` or pulsing a scale
-//! moves no body.
+//! Easing overwrites `Transform`, which physics also reads. Before the first tick of a frame, the values of
+//! the last tick are restored where the `Transform` still has the bits that easing wrote. All other values
+//! were written by the app: they are kept, and easing restarts from them. This is decided for each axis of
+//! translation and scale, and for the rotation as a whole. For example, sorting sprites by `z` or pulsing a
+//! scale moves no body.
 
 use bevy_app::{App, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::{
@@ -20,17 +20,17 @@ use bevy_transform_interpolation::{
     LastEasingTick, RotationEasingState, ScaleEasingState, TransformEasingSystems, TranslationEasingState,
 };
 
-/// The transform of an eased entity.
+/// The transforms of an eased entity.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(super) struct Eased {
-    /// After the last tick, with what the app has written since.
+    /// The transform after the last tick, including later writes of the app.
     tick: Transform,
-    /// As easing left it. Equal to `tick` where nothing is eased.
+    /// The transform that easing wrote. Equal to `tick` if nothing is eased.
     drawn: Transform,
 }
 
-/// Adds the systems, given those of the easing plugin. These are private, so they are ordered by
-/// their own sets.
+/// Adds the systems, given the systems of the easing plugin. The easing systems are private, so their own
+/// sets order them.
 pub(super) fn add_systems(app: &mut App, easing: &[SystemKey]) {
     // Registration fails only if the requirement exists already.
     let _ = app.try_register_required_components::<TranslationEasingState, Eased>();
@@ -42,7 +42,7 @@ pub(super) fn add_systems(app: &mut App, easing: &[SystemKey]) {
     let note_tick = note_tick
         .after(RunFixedMainLoopSystems::FixedMainLoop)
         .before(RunFixedMainLoopSystems::AfterFixedMainLoop);
-    // Within the set: what the app orders after it is a write of the app.
+    // In the set, so that a write by a system ordered after the set counts as a write of the app.
     let mut note_drawn = note_drawn.in_set(TransformEasingSystems::Ease);
     if let Some(graph) = app.get_schedule(RunFixedMainLoop).map(Schedule::graph) {
         let ease = graph.system_sets.get_key(TransformEasingSystems::Ease.intern());
@@ -75,7 +75,7 @@ struct Drawn {
 }
 
 impl DrawnItem<'_, '_> {
-    /// Undoes easing, as the module says.
+    /// Restores the transform of the last tick, as described in the module.
     fn put_back(mut self) {
         let Eased { tick, drawn } = self.eased;
         let mut now = *self.transform;
@@ -98,8 +98,8 @@ impl DrawnItem<'_, '_> {
     }
 }
 
-/// Undoes easing on the axes that have the drawn bits. On the others, both ends of easing become what
-/// the app wrote.
+/// Restores the tick's values on axes that still have the drawn bits. On the other axes, both ends of easing
+/// become the app's value.
 fn put_back_axes(now: &mut Vec3, tick: Vec3, drawn: Vec3, mut ends: [&mut Option<Vec3>; 2]) {
     for axis in 0..3 {
         if now[axis].to_bits() == drawn[axis].to_bits() {
@@ -110,32 +110,32 @@ fn put_back_axes(now: &mut Vec3, tick: Vec3, drawn: Vec3, mut ends: [&mut Option
     }
 }
 
-/// Undoes easing before the ticks of a frame.
+/// Restores transforms before the ticks of a frame.
 fn put_back(
     mut eased: Query<Drawn, Allow<Disabled>>,
     last: Option<ResMut<LastEasingTick>>,
     system: SystemChangeTick,
 ) {
     eased.par_iter_mut().for_each(DrawnItem::put_back);
-    // Easing stops for transforms that changed since this tick, whatever was written to them.
+    // Easing stops for transforms that changed since this tick, whatever their new value.
     if let Some(mut last) = last {
         **last = system.this_run();
     }
 }
 
-/// Undoes easing where it is removed.
+/// Restores the transform of an entity that loses easing.
 fn put_back_removed(removed: On<Remove, Eased>, mut eased: Query<Drawn, Allow<Disabled>>) {
     if let Ok(drawn) = eased.get_mut(removed.event_target()) {
         drawn.put_back();
     }
 }
 
-/// Notes the transforms after the last tick.
+/// Records the transforms after the last tick.
 fn note_tick(mut eased: Query<(&Transform, &mut Eased)>) {
     eased.par_iter_mut().for_each(|(transform, mut eased)| eased.tick = *transform);
 }
 
-/// Notes the transforms that easing wrote. Axes that do not move are drawn as they are.
+/// Records the transforms that easing wrote. Axes that do not move keep their exact values.
 fn note_drawn(
     mut eased: Query<(
         &mut Transform,
@@ -163,7 +163,7 @@ fn note_drawn(
     });
 }
 
-/// Removes from axes whose ends are equal what easing adds: rounding, and with velocities a curve.
+/// Undoes the effect of easing on axes with equal ends: rounding, and with velocities a curve.
 fn keep_still(drawn: &mut Vec3, start: Option<Vec3>, end: Option<Vec3>) {
     let (Some(start), Some(end)) = (start, end) else { return };
     for axis in (0..3).filter(|&axis| start[axis] == end[axis]) {

@@ -44,8 +44,8 @@ use crate::dynamics::rigid_body::RigidBody;
 /// exclude an entity. [`TransformHermiteEasing`] uses velocities as well as positions.
 ///
 /// Apps may write to the `Transform` of an eased body in any schedule. Writing `z` in 2D, or the scale, moves
-/// no body. Writing the rotation or a spatial axis sets that part of the pose; the other parts go on as
-/// without the write.
+/// no body. Writing the rotation or a spatial axis sets only this part of the pose; the write does not affect
+/// the other parts.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -65,7 +65,7 @@ pub struct PhysicsInterpolationPlugin {
 }
 
 impl PhysicsInterpolationPlugin {
-    /// Easing only for entities with a component for it. The default, as a constant.
+    /// Eases only entities with an easing component. The default, as a constant.
     const NONE: Self = Self {
         interpolate_translation: false,
         interpolate_rotation: false,
@@ -106,7 +106,7 @@ impl PhysicsInterpolationPlugin {
 
 impl Plugin for PhysicsInterpolationPlugin {
     fn build(&self, app: &mut App) {
-        // Easing reads the time since the last fixed tick. Apps without `TimePlugin` have no such clock.
+        // Easing reads the time since the last fixed tick. Apps without `TimePlugin` do not have this clock.
         app.init_resource::<Time<Fixed>>();
         skip_while_nothing_eases(app, |app| {
             app.add_plugins((
@@ -133,7 +133,7 @@ impl Plugin for PhysicsInterpolationPlugin {
     }
 
     fn finish(&self, app: &mut App) {
-        // The plugins above would add it next, without the run condition.
+        // Otherwise the plugins above would add it, without the run condition.
         let mut easing = Vec::new();
         if !app.is_plugin_added::<TransformEasingPlugin>() {
             easing = skip_while_nothing_eases(app, |app| {
@@ -145,7 +145,7 @@ impl Plugin for PhysicsInterpolationPlugin {
 }
 
 /// Adds systems that are skipped while no entity is eased. Scheduling two dozen systems would be most of the
-/// cost of an empty world. Returns those in [`RunFixedMainLoop`].
+/// cost of an empty world. Returns the systems in [`RunFixedMainLoop`].
 fn skip_while_nothing_eases(app: &mut App, add_systems: impl FnOnce(&mut App)) -> Vec<SystemKey> {
     let eased = [FixedFirst.intern(), FixedLast.intern(), RunFixedMainLoop.intern()];
     let keys = |app: &App| {

@@ -40,7 +40,7 @@ pub(super) fn add_systems(app: &mut App) {
         .add_systems(FixedLast, store_velocities::<true>.before(TransformEasingSystems::UpdateEnd));
 }
 
-/// Queries for what moves parents.
+/// Queries for the motion of parents.
 #[derive(SystemParam)]
 struct Above<'w, 's> {
     parents: Parents<'w, 's>,
@@ -61,12 +61,13 @@ impl Above<'_, '_> {
         self.parent(entity).unwrap_or(Frame::IDENTITY).child(transform).translation().into()
     }
 
-    /// The nearest body above. Its parents do not move it.
+    /// The nearest body above an entity. Parents of a body do not move it.
     fn body(&self, entity: Entity) -> Option<Entity> {
         self.parents.iter_ancestors(entity).find(|&above| self.bodies.contains(above))
     }
 
-    /// A linear velocity in the parent's frame, relative to the nearest body above if that is eased, too.
+    /// A linear velocity in the parent's frame, relative to the nearest body above if that body is also
+    /// eased.
     fn linear(&self, entity: Entity, velocity: Vec3) -> Vec3 {
         let Some(parent) = self.parent(entity) else { return velocity };
         let mut relative = velocity.as_dvec3();
@@ -82,7 +83,8 @@ impl Above<'_, '_> {
         parent.local_vector(relative.into()).map_or(Vec3::ZERO, |local| DVec3::from(local).as_vec3())
     }
 
-    /// An angular velocity in the parent's frame, relative to the nearest body above if that is eased, too.
+    /// An angular velocity in the parent's frame, relative to the nearest body above if that body is also
+    /// eased.
     fn angular(&self, entity: Entity, velocity: Vec3) -> Vec3 {
         let Some(parent) = self.parent(entity) else { return velocity };
         let above = self.body(entity).and_then(|body| self.turning.get(body).ok());
@@ -92,7 +94,7 @@ impl Above<'_, '_> {
     }
 }
 
-/// Stores the velocities by the clock of the ticks: zero while physics is paused, and smaller in slow motion.
+/// Stores the velocities by the tick clock: zero while physics is paused, and smaller in slow motion.
 fn store_velocities<const END: bool>(
     mut linear: Query<(Entity, &LinearVelocity, &mut LocalLinear<END>)>,
     mut angular: Query<(Entity, &AngularVelocity, &mut LocalAngular<END>)>,

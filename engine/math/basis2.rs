@@ -1,9 +1,9 @@
-//! 2D rotations from basis vectors. `basis3.rs` has those of 3D.
+//! 2D rotations from basis vectors. `basis3.rs` has the functions of 3D.
 
 use super::{DIM, Vector};
 use crate::physics_transform::Rotation;
 
-/// The rotation that maps the x axis to `axis`, which may have any length. The identity for a zero vector.
+/// The rotation that maps the x axis to `axis`, which may have any length. A zero vector gives the identity.
 pub fn orthonormal_basis_from_vec(axis: Vector) -> Rotation {
     match axis.try_normalize() {
         Some(axis) => Rotation { cos: axis.x, sin: axis.y },

@@ -1,9 +1,9 @@
-//! 3D rotations from basis vectors. `basis2.rs` has those of 2D.
+//! 3D rotations from basis vectors. `basis2.rs` has the functions of 2D.
 
 use super::{DIM, Matrix3, Quaternion, Vector};
 
-/// A rotation that maps the x axis to `axis`, which may have any length. The identity for a zero vector. The
-/// rotation about `axis` is unspecified, but depends on `axis` only.
+/// A rotation that maps the x axis to `axis`, which may have any length. A zero vector gives the identity.
+/// The rotation about `axis` is unspecified, but depends only on `axis`.
 pub fn orthonormal_basis_from_vec(axis: Vector) -> Quaternion {
     match axis.try_normalize() {
         Some(x) => {

@@ -31,7 +31,7 @@ pub(crate) const NO_INERTIA: SymmetricTensor = 0.0;
 pub(crate) type TangentVector = Scalar;
 /// An angular inertia.
 pub(crate) type SymmetricTensor = Scalar;
-/// A vector in `f32`, with any public precision.
+/// A vector in `f32`, independent of the public precision.
 pub(crate) type VectorF32 = Vec2;
 pub(crate) use bevy_heavy::{
     ComputeMassProperties2d as ComputeMassProperties, MassProperties2d as MassProperties,

@@ -31,7 +31,7 @@ pub(crate) const NO_INERTIA: SymmetricTensor = SymmetricTensor::ZERO;
 pub(crate) type TangentVector = super::Vector2;
 /// An angular inertia.
 pub(crate) type SymmetricTensor = SymmetricMatrix3;
-/// A vector in `f32`, with any public precision.
+/// A vector in `f32`, independent of the public precision.
 pub(crate) type VectorF32 = Vec3;
 pub(crate) use bevy_heavy::{
     ComputeMassProperties3d as ComputeMassProperties, MassProperties3d as MassProperties,
@@ -121,7 +121,7 @@ mod tests {
         assert_eq!(vector_from_kernel(vector_to_kernel(v)), v);
         assert_eq!(angular_from_kernel(angular_to_kernel(v)), v);
         let m = SymmetricTensor::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
-        // The kernel's product is that of the matrix.
+        // The kernel's product equals the matrix product.
         let applied = inv_inertia_to_kernel(m).apply(vector_to_kernel(v));
         assert_eq!(vector_from_kernel(applied), m * v);
     }

@@ -1,5 +1,5 @@
-//! Numeric types of the public API: precision and dimension by alias, conversions between precisions and to
-//! the kernel's types, and a few matrix operations that glam lacks.
+//! Numeric types of the public API: aliases for precision and dimension, conversions between precisions and
+//! to the kernel's types, and matrix operations that glam lacks.
 //!
 //! ```
 //! # use avian::math::*;
@@ -40,7 +40,7 @@ pub(crate) fn to_f32(value: Scalar) -> f32 {
 pub trait AdjustPrecision {
     /// The same kind of value in [`Scalar`] precision.
     type Adjusted;
-    /// The value in [`Scalar`] precision, rounded to nearest where that is the narrower one.
+    /// The value in [`Scalar`] precision, rounded to nearest if that is the lower precision.
     fn adjust_precision(&self) -> Self::Adjusted;
 }
 
@@ -90,10 +90,10 @@ impl AsF32 for Vec4 {
     }
 }
 
-/// The reciprocal of quantities whose infinity is stored as zero, such as an inverse mass.
+/// The reciprocal of a quantity whose infinity is stored as zero, such as an inverse mass.
 pub trait RecipOrZero {
-    /// `1 / self`, or zero if that is not finite: for zero, infinity, NaN, and numbers too small to invert.
-    /// By component for vectors.
+    /// `1 / self`, or zero if the result is not finite: for zero, infinity, NaN, and numbers too small to
+    /// invert. Applied per component for vectors.
     #[must_use]
     fn recip_or_zero(self) -> Self;
 }
@@ -103,7 +103,7 @@ macro_rules! recip_or_zero {
         $(impl RecipOrZero for $scalar {
             #[inline]
             fn recip_or_zero(self) -> Self {
-                // A division, not `recip`: the same bits everywhere.
+                // A division instead of `recip` gives the same bits everywhere.
                 let inverse = 1.0 / self;
                 if inverse.is_finite() { inverse } else { 0.0 }
             }
@@ -123,12 +123,12 @@ recip_or_zero! { f32, f64; Vec2 { x, y }, DVec2 { x, y }, Vec3 { x, y, z }, DVec
 pub trait MatExt {
     /// The type of the entries.
     type Scalar;
-    /// The inverse, or the zero matrix if there is none: for a singular matrix, or one with entries that are
-    /// infinite or NaN.
+    /// The inverse, or the zero matrix if there is no inverse: for a singular matrix, or a matrix with
+    /// infinite or NaN entries.
     #[must_use]
     fn inverse_or_zero(self) -> Self;
     /// Whether the matrix is a multiple of the identity: all entries off the diagonal, and all differences on
-    /// it, are at most `epsilon`.
+    /// the diagonal, are at most `epsilon`.
     fn is_isotropic(&self, epsilon: Self::Scalar) -> bool;
 }
 

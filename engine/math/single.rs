@@ -1,5 +1,4 @@
-//! `f32` as the precision of the public API: the scalar, the vectors and matrices, and the
-//! conversions into it.
+//! `f32` as the precision of the public API: the scalar, the vectors and matrices, and the conversions to it.
 
 use bevy_math::{DMat3, DQuat, DVec2, DVec3, Mat3, Quat, Vec2, Vec3};
 use glam_matrix_extras::{SymmetricDMat2, SymmetricDMat3, SymmetricMat2, SymmetricMat3};
@@ -33,7 +32,7 @@ pub type SymmetricMatrix3 = SymmetricMat3;
 /// A quaternion in [`Scalar`] precision.
 pub type Quaternion = Quat;
 
-/// Implements [`AdjustPrecision`] by one expression per source type.
+/// Implements [`AdjustPrecision`] with one expression per source type.
 macro_rules! adjust_precision {
     ($($source:ty => $adjusted:ty: |$value:ident| $conversion:expr;)+) => {$(
         impl AdjustPrecision for $source {

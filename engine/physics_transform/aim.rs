@@ -1,4 +1,4 @@
-//! Reads the transforms of bodies that follow them: at the start of each frame, and before each step.
+//! Reads the transforms that bodies follow: at the start of each frame, and before each step.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::{Fixed, Time, Virtual};
@@ -17,11 +17,11 @@ use crate::{
     schedule::OnThisThread,
 };
 
-/// Whether the fixed loop of this frame runs.
+/// Whether the fixed loop of this frame is running.
 #[derive(Resource, Default)]
 pub(crate) struct InFixedLoop(bool);
 
-/// Where the transforms of bodies that follow them are.
+/// Computes the poses that the transforms of following bodies give.
 #[derive(SystemParam)]
 pub(crate) struct Places<'w, 's> {
     transforms: Query<'w, 's, &'static Transform>,
@@ -30,8 +30,8 @@ pub(crate) struct Places<'w, 's> {
 }
 
 impl Places<'_, '_> {
-    /// The pose that the transform of a body gives. `None` without a transform, and with a warning if it is
-    /// not finite. A transform without a rotation keeps that of the body.
+    /// The pose given by a body's transform. `None` without a transform, and with a warning if it is not
+    /// finite. If the transform has no rotation, the body's rotation is used.
     fn of(&mut self, entity: Entity, rotation: &Rotation) -> Option<Place> {
         let transform = self.transforms.get(entity).ok()?;
         let parent = parent_frame(entity, &self.parents, |e| self.transforms.get(e).ok().copied());
@@ -42,7 +42,7 @@ impl Places<'_, '_> {
     }
 }
 
-/// Notes the transforms at the start of a frame, before the fixed loop.
+/// Records the transforms at the start of a frame, before the fixed loop.
 pub(crate) fn begin_frame(
     mut followers: Query<(Entity, &Rotation, &mut Followed)>,
     mut places: Places,
@@ -58,7 +58,7 @@ pub(crate) fn begin_frame(
     }
 }
 
-/// Notes that the fixed loop is over.
+/// Records that the fixed loop is over.
 pub(crate) fn end_fixed_loop(mut in_loop: ResMut<InFixedLoop>) {
     in_loop.0 = false;
 }

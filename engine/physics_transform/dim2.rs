@@ -1,4 +1,4 @@
-//! 2D rotations, and 2D parts of the transform sync. `dim3.rs` exports the same names.
+//! 2D rotations, and the 2D parts of the transform synchronisation. `dim3.rs` exports the same names.
 
 use bevy_ecs::{component::Component, reflect::ReflectComponent};
 use bevy_math::{DQuat, Quat, Rot2};
@@ -12,8 +12,7 @@ use super::{
 };
 use crate::math::{FRAC_1_SQRT_2, Matrix, Quaternion, Scalar, Vector, Vector3};
 
-/// The world rotation of a rigid body or collider: the cosine and sine of its angle,
-/// counter-clockwise.
+/// The world rotation of a rigid body or collider: the cosine and sine of its angle, counter-clockwise.
 ///
 /// ```
 /// # use avian::{prelude::*, math::Vector};
@@ -21,7 +20,7 @@ use crate::math::{FRAC_1_SQRT_2, Matrix, Quaternion, Scalar, Vector, Vector3};
 /// assert_eq!(rotation * rotation * Vector::X, Vector::Y);
 /// ```
 ///
-/// Multiplication renormalises, so that products of many rotations stay rotations.
+/// Multiplication renormalises, which keeps products of many rotations valid.
 #[derive(Reflect, Clone, Copy, Component, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -42,8 +41,8 @@ impl Default for Rotation {
 }
 
 impl Rotation {
-    /// Placeholder for the rotation of the `Transform`. It is replaced when the entity gets its
-    /// body or collider.
+    /// Placeholder that is replaced by the rotation of the `Transform` when the entity gets its body or
+    /// collider.
     pub const PLACEHOLDER: Self = Self { cos: Scalar::MAX, sin: Scalar::MAX };
     /// No rotation.
     pub const IDENTITY: Self = Self { cos: 1.0, sin: 0.0 };
@@ -102,7 +101,7 @@ impl Rotation {
         Self::degrees(degrees)
     }
 
-    /// The rotation whose angle has this sine and cosine; `sin² + cos²` should be 1.
+    /// The rotation whose angle has this sine and cosine. `sin² + cos²` should be 1.
     pub fn from_sin_cos(sin: Scalar, cos: Scalar) -> Self {
         Self { cos, sin }
     }
@@ -154,7 +153,7 @@ impl Rotation {
         self.try_normalize().unwrap_or(self)
     }
 
-    /// One Newton step towards length 1, without a square root. For pairs that are nearly unit.
+    /// One Newton step towards length 1, without a square root. For pairs with a length close to 1.
     pub fn fast_renormalize(self) -> Self {
         let factor = 0.5 * (3.0 - self.length_squared());
         Self { cos: self.cos * factor, sin: self.sin * factor }
@@ -187,7 +186,7 @@ impl Rotation {
         narrow(kernel::math::atan2(c * os - s * oc, c * oc + s * os))
     }
 
-    /// The angle in radians from `self` to `end`, in −π … π. As a rotation vector in 3D.
+    /// The angle in radians from `self` to `end`, in −π … π. In 3D this is a rotation vector.
     pub(crate) fn turn_to(self, end: Self) -> Scalar {
         self.angle_between(end)
     }
@@ -202,8 +201,8 @@ impl Rotation {
         Self { cos: self.cos - radians * self.sin, sin: self.sin + radians * self.cos }.normalize()
     }
 
-    /// Interpolates from `self` (`s` = 0) to `end` (`s` = 1) along the chord, and renormalises. For opposite
-    /// rotations, the start.
+    /// Interpolates from `self` (`s` = 0) to `end` (`s` = 1) along the chord, and renormalises. Opposite
+    /// rotations give `self`.
     pub fn nlerp(self, end: Self, s: Scalar) -> Self {
         let mix = Self { cos: self.cos + (end.cos - self.cos) * s, sin: self.sin + (end.sin - self.sin) * s };
         mix.try_normalize().unwrap_or(self)
@@ -240,13 +239,13 @@ impl Rotation {
         kernel::math::Rot { cos: self.cos as f32, sin: self.sin as f32 }
     }
 
-    /// The rotation of a kernel rotation.
+    /// Converts a kernel rotation.
     pub(crate) fn from_kernel(rotation: kernel::math::Rot) -> Self {
         Self { cos: Scalar::from(rotation.cos), sin: Scalar::from(rotation.sin) }
     }
 
-    /// As a rotation about the z axis, by half angles: `w = √((1 + cos) / 2)`, `z = sin / 2w`. The form
-    /// without cancellation is used.
+    /// The rotation about the z axis as a quaternion, by half angles: `w = √((1 + cos) / 2)`, `z = sin / 2w`.
+    /// Of the equivalent forms, the one without cancellation is used.
     pub(super) fn to_f64(self) -> Rotation64 {
         let (c, s) = (wide(self.cos), wide(self.sin));
         let (z, w) = if c >= 0.0 {
@@ -259,7 +258,7 @@ impl Rotation {
         Rotation64 { x: 0.0, y: 0.0, z, w }
     }
 
-    /// The rotation about z of a 3D rotation; `None` if it has no finite angle.
+    /// The rotation about z of a 3D rotation. `None` if it has no finite angle.
     pub(super) fn from_f64(turn: Rotation64) -> Option<Self> {
         let (z, w) = twist(turn);
         let length = z * z + w * w;
@@ -270,7 +269,7 @@ impl Rotation {
     }
 }
 
-/// The part of a 3D rotation about z, as (z, w), not normalised. A rotation closer to "flipped" than to
+/// The component of a 3D rotation about z, as (z, w), not normalised. A rotation closer to "flipped" than to
 /// "upright" (a sprite rotated half a turn about y or x, showing its back) is measured relative to the half
 /// turn about y, so that a flip alone counts as no rotation: `(w + z k) j = w j − z i`.
 fn twist(turn: Rotation64) -> (f64, f64) {
@@ -279,8 +278,8 @@ fn twist(turn: Rotation64) -> (f64, f64) {
     if upright >= flipped { (turn.z, turn.w) } else { (-turn.x, turn.y) }
 }
 
-/// The world rotation of an entity that should have the rotation `rotation` and now has `current`: only the
-/// part about z is replaced, a tilt is kept.
+/// The world rotation of an entity with the target rotation `rotation` and the current rotation `current`.
+/// Only the component about z is replaced, a tilt is kept.
 #[inline]
 pub(super) fn world_rotation(rotation: Rotation, current: Rotation64) -> Rotation64 {
     let wanted = rotation.to_f64();
@@ -292,20 +291,20 @@ pub(super) fn world_rotation(rotation: Rotation, current: Rotation64) -> Rotatio
     wanted.mul(old.inverse().mul(current)).normalized()
 }
 
-/// Whether `read`, extracted from the tilted rotation `current`, differs from `held` by rounding only.
+/// Whether `read`, extracted from the tilted rotation `current`, differs from `held` only by rounding.
 /// Without a tilt, bits are compared instead.
 pub(super) fn is_rounding(read: Rotation, held: Rotation, current: Rotation64) -> bool {
     let tilted = current.x != 0.0 || current.y != 0.0;
     tilted && (read.cos - held.cos).abs() < 1e-6 && (read.sin - held.sin).abs() < 1e-6
 }
 
-/// The point with the spatial part `v`, and z from `rest`.
+/// The point with the spatial part `v` and the z of `rest`.
 pub(super) fn xyz_with(v: Vector, rest: [f64; 3]) -> [f64; 3] {
     [wide(v.x), wide(v.y), rest[2]]
 }
 
 impl Position {
-    /// The position at a point, in metres.
+    /// The position with these coordinates, in metres.
     pub fn from_xy(x: Scalar, y: Scalar) -> Self {
         Self(Vector::new(x, y))
     }
@@ -332,7 +331,7 @@ impl From<Rotation> for Matrix {
 }
 
 impl From<Matrix> for Rotation {
-    /// The rotation that maps the x axis as the matrix does.
+    /// The rotation that maps the x axis like the matrix.
     fn from(matrix: Matrix) -> Self {
         Self { cos: matrix.x_axis.x, sin: matrix.x_axis.y }.normalize()
     }
@@ -358,14 +357,14 @@ impl From<Rotation> for Quaternion {
 }
 
 impl From<Quat> for Rotation {
-    /// The rotation about z in the quaternion.
+    /// The rotation about z of the quaternion.
     fn from(rotation: Quat) -> Self {
         Self::from_f64(Rotation64::from_quat(rotation)).unwrap_or(Self::IDENTITY)
     }
 }
 
 impl From<DQuat> for Rotation {
-    /// The rotation about z in the quaternion.
+    /// The rotation about z of the quaternion.
     fn from(rotation: DQuat) -> Self {
         let [x, y, z, w] = rotation.to_array();
         Self::from_f64(Rotation64 { x, y, z, w }).unwrap_or(Self::IDENTITY)

@@ -1,4 +1,4 @@
-//! 3D rotations, and 3D parts of the transform sync. `dim2.rs` exports the same names.
+//! 3D rotations, and the 3D parts of the transform synchronisation. `dim2.rs` exports the same names.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::{component::Component, reflect::ReflectComponent};
@@ -14,10 +14,10 @@ use super::{
 };
 use crate::math::{Quaternion, Scalar, Vector};
 
-/// The world rotation of a rigid body or collider, a unit quaternion.
+/// The world rotation of a rigid body or collider, as a unit quaternion.
 ///
-/// Multiplication renormalises, so that products of many rotations stay rotations. Products are computed in
-/// scalars, so that their bits do not depend on vector instructions.
+/// Multiplication renormalises, which keeps products of many rotations valid. Products are computed in
+/// scalars, so their bits do not depend on vector instructions.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -27,8 +27,8 @@ pub struct Rotation(pub Quaternion);
 crate::type_path::type_path!(Rotation, "physics_transform::transform");
 
 impl Rotation {
-    /// Placeholder for the rotation of the `Transform`. It is replaced when the entity gets its
-    /// body or collider.
+    /// Placeholder that is replaced by the rotation of the `Transform` when the entity gets its body or
+    /// collider.
     pub const PLACEHOLDER: Self =
         Self(Quaternion::from_xyzw(Scalar::MAX, Scalar::MAX, Scalar::MAX, Scalar::MAX));
     /// No rotation.
@@ -44,7 +44,7 @@ impl Rotation {
         Self(Quaternion::from_xyzw(-self.0.x, -self.0.y, -self.0.z, self.0.w))
     }
 
-    /// Interpolates from `self` (`t` = 0) to `end` (`t` = 1) along the chord, the shorter way, and
+    /// Interpolates from `self` (`t` = 0) to `end` (`t` = 1) along the chord of the shorter arc, and
     /// renormalises.
     pub fn nlerp(self, end: Self, t: Scalar) -> Self {
         let (a, b) = (self.to_f64(), end.to_f64());
@@ -54,8 +54,8 @@ impl Rotation {
 
     /// Interpolates from `self` (`t` = 0) to `end` (`t` = 1) at constant angular speed along the shorter arc.
     ///
-    /// `(sin((1 − t) θ) a + sin(t θ) b) / sin θ` with `cos θ = a · b` (Shoemake, "Animating Rotation
-    /// with Quaternion Curves", 1985); where θ vanishes, along the chord.
+    /// `(sin((1 − t) θ) a + sin(t θ) b) / sin θ` with `cos θ = a · b` (Shoemake, "Animating Rotation with
+    /// Quaternion Curves", 1985). If θ vanishes, along the chord.
     pub fn slerp(self, end: Self, t: Scalar) -> Self {
         let (a, b) = (self.to_f64(), end.to_f64());
         let b = if a.dot(b) < 0.0 { b.negated() } else { b };
@@ -72,13 +72,13 @@ impl Rotation {
     pub(crate) fn turn_to(self, end: Self) -> Vector {
         let turn = end.to_f64().mul(self.to_f64().inverse());
         let turn = if turn.w < 0.0 { turn.negated() } else { turn };
-        // sin(angle/2), which the axis is multiplied by.
+        // sin(angle/2), the factor of the axis in the quaternion.
         let sine = (turn.x * turn.x + turn.y * turn.y + turn.z * turn.z).sqrt();
         let factor = if sine > 0.0 { turn.angle() / sine } else { 2.0 };
         Vector::new(narrow(turn.x * factor), narrow(turn.y * factor), narrow(turn.z * factor))
     }
 
-    /// One Newton step towards length 1, without a square root. For quaternions that are nearly unit.
+    /// One Newton step towards length 1, without a square root. For quaternions with a length close to 1.
     pub fn fast_renormalize(self) -> Self {
         let q = self.0;
         let square = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
@@ -100,7 +100,7 @@ impl Rotation {
         )
     }
 
-    /// The product: `other` first, then `self`. Renormalised unless that is not finite.
+    /// The product: `other` first, then `self`. Renormalised if the result is finite.
     #[inline]
     pub(super) fn then_of(self, other: Self) -> Self {
         let (a, b) = (self.0, other.0);
@@ -121,7 +121,7 @@ impl Rotation {
         kernel::math::Rot { x: x as f32, y: y as f32, z: z as f32, w: w as f32 }
     }
 
-    /// The rotation of a kernel rotation.
+    /// Converts a kernel rotation.
     pub(crate) fn from_kernel(rotation: kernel::math::Rot) -> Self {
         let kernel::math::Rot { x, y, z, w } = rotation;
         Self(Quaternion::from_xyzw(Scalar::from(x), Scalar::from(y), Scalar::from(z), Scalar::from(w)))
@@ -132,8 +132,8 @@ impl Rotation {
         Rotation64 { x: wide(x), y: wide(y), z: wide(z), w: wide(w) }
     }
 
-    /// From an `f64` rotation, renormalised if it deviates from unit length by more than rounding. `None` if
-    /// it cannot be normalised.
+    /// Converts an `f64` rotation. It is renormalised if it deviates from unit length by more than rounding.
+    /// `None` if it cannot be normalised.
     pub(super) fn from_f64(turn: Rotation64) -> Option<Self> {
         let square = turn.dot(turn);
         if !(square > 0.0 && square.is_finite()) {
@@ -144,12 +144,12 @@ impl Rotation {
     }
 }
 
-/// The world rotation of an entity that should have the rotation `rotation`.
+/// The world rotation of an entity with the target rotation `rotation`.
 pub(super) fn world_rotation(rotation: Rotation, _current: Rotation64) -> Rotation64 {
     rotation.to_f64()
 }
 
-/// Whether `read` differs from `held` by rounding only. Never in 3D, where bits are compared instead.
+/// Whether `read` differs from `held` only by rounding. Always false in 3D, where bits are compared instead.
 pub(super) fn is_rounding(_read: Rotation, _held: Rotation, _current: Rotation64) -> bool {
     false
 }
@@ -160,7 +160,7 @@ pub(super) fn xyz_with(v: Vector, _rest: [f64; 3]) -> [f64; 3] {
 }
 
 impl Position {
-    /// The position at a point, in metres.
+    /// The position with these coordinates, in metres.
     pub fn from_xyz(x: Scalar, y: Scalar, z: Scalar) -> Self {
         Self(Vector::new(x, y, z))
     }
@@ -209,7 +209,7 @@ impl From<DQuat> for Rotation {
     }
 }
 
-/// Operations that only 3D needs.
+/// Operations that are needed only in 3D.
 impl Rotation64 {
     pub(crate) fn negated(self) -> Self {
         Self { x: -self.x, y: -self.y, z: -self.z, w: -self.w }

@@ -1,8 +1,8 @@
-//! Kinematic bodies that follow their `Transform`: where they have to be at the end of a step.
+//! Kinematic bodies that follow their `Transform`: their targets at the end of a step.
 //!
-//! The app writes a `Transform` once a frame, and steps are taken at other times. What a body follows is the
-//! line between the transforms of the last two frames: over the ticks of this frame it moves from one to the
-//! other, so that it has the same velocity at any number of ticks per frame.
+//! The app writes a `Transform` once a frame, and steps are taken at other times. A body follows the line
+//! between the transforms of the last two frames: over the ticks of this frame it moves from the older to the
+//! newer transform. This gives it the same velocity at any number of ticks per frame.
 //!
 //! ```text
 //! frame        f-2        f-1         f
@@ -10,7 +10,8 @@
 //! ticks                        k          pose at tick k = T₂ + (T₁ - T₂) · (time of k - start of f) / length of f
 //! ```
 //!
-//! A `Transform` that changed within the fixed loop, or outside of it, is where the body has to be at once.
+//! If the `Transform` changed within the fixed loop, or the step is taken outside of it, the target is the
+//! current `Transform`.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
@@ -20,24 +21,26 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::{Position, Rotation};
 use crate::math::Scalar;
 
-/// Lets a kinematic body go where its `Transform` is by velocity, instead of teleporting it there: what
-/// stands on it is carried, what is in its way is hit with its true velocity.
+/// Moves a kinematic body to its `Transform` by velocity instead of teleporting it. It carries bodies that
+/// stand on it, and hits bodies in its way with its true velocity.
 ///
 /// The app animates the `Transform` of the body or of an entity above it, once a frame or in each tick. The
 /// engine sets [`LinearVelocity`](crate::prelude::LinearVelocity) and
-/// [`AngularVelocity`](crate::prelude::AngularVelocity) before each step, so that the body gets there in the
-/// step; they are zero when the `Transform` no longer moves. What the app writes to them is overwritten.
+/// [`AngularVelocity`](crate::prelude::AngularVelocity) before each step, so that the body reaches the
+/// `Transform` in the step. They are zero when the `Transform` no longer moves. Values that the app writes to
+/// them are overwritten.
 ///
-/// - Written in `Update` while physics runs in fixed ticks, the body is one frame behind its `Transform`, and
-///   moves evenly: at 64 ticks a second its velocity is right with 30 frames as with 144.
-/// - The engine does not write the `Transform`: it stays as the app animates it, also with
-///   `translation += …`.
+/// - If the `Transform` is written in `Update` while physics runs in fixed ticks, the body is one frame
+///   behind its `Transform`, and moves evenly: at 64 ticks a second its velocity is right with 30 frames as
+///   with 144.
+/// - The engine does not write the `Transform`. The app may animate it by `translation += …`.
 /// - A jump of the `Transform` is a motion like any other: 10 m in a tick are 640 m/s. To teleport the body,
-///   set its [`Position`] or [`Rotation`]: it is there at once and at rest, and its `Transform` is written.
-/// - A `Transform` that moved while physics was paused is such a teleport.
+///   set its [`Position`] or [`Rotation`]: the body is there at once, at rest, and its `Transform` is
+///   written.
+/// - A `Transform` that moved while physics was paused also teleports the body.
 ///
-/// Without effect on dynamic and static bodies, and while the body is disabled. Not for bodies with
-/// `TransformInterpolation`: what the app animates needs no easing. Beyond Avian.
+/// It has no effect on dynamic, static and disabled bodies. Do not use it with `TransformInterpolation`: a
+/// `Transform` animated by the app needs no easing. Beyond Avian.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -71,53 +74,53 @@ pub struct FollowTransform;
 /// A pose in the world.
 pub(crate) type Place = (Position, Rotation);
 
-/// Which of pose and transform the app sets.
+/// Whether the app sets the pose or the transform.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Lead {
-    /// The body is new, or was none that follows.
+    /// The body is new, or has just started to follow.
     #[default]
     Fresh,
-    /// A step was taken with a pose that the app set. It was written to the transform.
+    /// The app set the pose before the last step. The pose was written to the transform.
     Pose,
     /// The body follows its transform.
     Transform,
 }
 
-/// How far a body followed its transform.
+/// The state of a body that follows its transform.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(crate) struct Followed {
     pub(crate) lead: Lead,
-    /// The transform at the start of the last frame and of this one.
+    /// The transforms at the start of the last frame and of this frame.
     frames: Option<[Place; 2]>,
-    /// The end of the next step.
+    /// The target pose at the end of the next step.
     target: Option<Place>,
-    /// No step was taken with a target before this one.
+    /// The previous target was replaced before a step took it.
     is_late: bool,
-    /// The end of the last step.
+    /// The target pose of the last step.
     reached: Option<Place>,
 }
 
-/// Where a body has to be at the end of a step.
+/// The target pose of a body at the end of a step.
 pub(crate) struct Target {
     pub(crate) place: Place,
-    /// It was there in the last step already.
+    /// The target of the last step was the same.
     pub(crate) is_same: bool,
-    /// Steps were left out, so that the body has to be put there.
+    /// Steps were skipped, so the body must be teleported to the target.
     pub(crate) is_late: bool,
 }
 
 impl Followed {
-    /// Whether the transform is the app's, and not written.
+    /// Whether the app sets the transform, and the engine does not write it.
     pub(crate) fn is_led(&self) -> bool {
         self.lead == Lead::Transform
     }
 
-    /// Ends following: the app set a pose.
+    /// Stops following, because the app set a pose.
     pub(crate) fn stop(&mut self) {
         *self = Self { lead: Lead::Pose, ..Self::default() };
     }
 
-    /// Takes the target for a step. `None` if there is none for it, as for steps taken by hand.
+    /// Takes the target for a step. `None` if no target was set, for example for steps taken by hand.
     pub(crate) fn take(&mut self) -> Option<Target> {
         let is_late = core::mem::take(&mut self.is_late);
         let place = self.target.take()?;
@@ -125,13 +128,13 @@ impl Followed {
         Some(Target { place, is_same, is_late })
     }
 
-    /// Starts a frame with a transform.
+    /// Starts a frame with its current transform.
     pub(super) fn begin_frame(&mut self, now: Place) {
         let last = self.frames.map_or(now, |[_, last]| last);
         self.frames = Some([last, now]);
     }
 
-    /// Sets the target from the transform as it is, and the share of this frame that has passed.
+    /// Sets the target from the current transform and the elapsed fraction of this frame.
     pub(super) fn aim(&mut self, now: Place, share: Scalar) {
         let [from, to] = self.frames.filter(|[_, last]| *last == now).unwrap_or([now; 2]);
         self.frames = Some([from, to]);

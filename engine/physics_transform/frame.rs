@@ -1,9 +1,9 @@
 //! Coordinate frames of the transform hierarchy, in `f64` scalars, and conversions of poses between them.
 //!
-//! `GlobalTransform` does not serve: it is an `Affine3A`, whose sums run in another order on another
-//! instruction set, and inside a fixed step it is a frame old. The inputs are `f32`, so `f64` leaves one
-//! rounding at the end. A pose that is written to a nested body's `Transform` is read back with the same
-//! bits, but for rare ties.
+//! `GlobalTransform` is not suitable: it is an `Affine3A`, whose sums run in another order on other
+//! instruction sets, and inside a fixed step it is a frame old. The inputs are `f32`, so with `f64` there is
+//! only one rounding, at the end. A pose that is written to a nested body's `Transform` is read back with the
+//! same bits, except for rare ties.
 
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
@@ -36,8 +36,8 @@ fn inverse(m: &Columns) -> Option<Columns> {
     Some([0, 1, 2].map(|column| [0, 1, 2].map(|row| rows[row][column] / d)))
 }
 
-/// The rotation whose axes are the first and second column, orthonormalised (Gram–Schmidt). `None` if they
-/// are parallel or zero.
+/// The rotation with axes along the first and second column, orthonormalised (Gram–Schmidt). `None` if the
+/// columns are parallel or zero.
 fn orthonormal(first: [f64; 3], second: [f64; 3]) -> Option<Rotation64> {
     let unit = |v: [f64; 3]| {
         let length = dot(v, v).sqrt();
@@ -52,19 +52,19 @@ fn orthonormal(first: [f64; 3], second: [f64; 3]) -> Option<Rotation64> {
 /// The linear part of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Linear {
-    /// Scaled along its axes, then rotated.
+    /// Scaling along the frame's axes, then a rotation.
     Scaled([f64; 3]),
-    /// Any other: a rotation below an uneven scale.
+    /// Any other matrix: a rotation below an uneven scale.
     Sheared(Columns),
 }
 
 /// The frame of an entity in the world, or in a body's space.
 ///
-/// Rotation and scale are stored separately if they commute, which is so except for a rotation below an
+/// Rotation and scale are stored separately if they commute, which is true except for a rotation below an
 /// uneven or mirroring scale. Otherwise the frame is a matrix M, and its rotation is defined by the QR
 /// factors of M: its x axis is the image of the x axis (negated if M mirrors, as in Bevy), and its xy plane
-/// the image of the xy plane. This definition has an exact inverse: a rotation written below a sheared parent
-/// is read back unchanged.
+/// is the image of the xy plane. This definition has an exact inverse: a rotation written below a sheared
+/// parent is read back unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Frame {
     translation: [f64; 3],
@@ -100,7 +100,7 @@ impl Frame {
         Self { translation, rotation, linear }
     }
 
-    /// The frame without translation and rotation: its scale only.
+    /// The frame without translation and rotation, with its scale only.
     pub(crate) fn unposed(&self) -> Self {
         let linear = match self.linear {
             Linear::Scaled(_) => self.linear,
@@ -167,9 +167,9 @@ impl Frame {
         }
     }
 
-    /// Transforms an angular velocity from the outer space to this frame: the axis as a vector, at the
-    /// same speed, and in the opposite sense if the frame mirrors. `None` if the frame is singular or
-    /// nothing turns.
+    /// Transforms an angular velocity from the outer space to this frame: the axis is transformed as a
+    /// vector, the speed is kept, and the sense is reversed if the frame mirrors. `None` if the frame is
+    /// singular or the angular velocity is zero.
     pub(crate) fn local_spin(&self, spin: [f64; 3]) -> Option<[f64; 3]> {
         let axis = self.local_vector(spin)?;
         let factor = (dot(spin, spin) / dot(axis, axis)).sqrt() * determinant(&self.matrix()).signum();
@@ -193,8 +193,9 @@ impl Frame {
     }
 }
 
-/// Whether turning and scaling may be swapped: no turn, one positive factor, or about z with one factor in
-/// the plane. A mirrored frame never passes, so that its rotation has one definition.
+/// Whether rotation and scale commute: no rotation, one positive factor for all axes, or a rotation about z
+/// with one factor in the plane. The result is false for every mirrored frame, which gives its rotation one
+/// definition.
 fn commute(scale: [f64; 3], turn: Rotation64) -> bool {
     let [x, y, z] = scale;
     let positive = x > 0.0 && y > 0.0 && z > 0.0;
@@ -206,8 +207,8 @@ fn xyz(v: Vec3) -> [f64; 3] {
     v.to_array().map(f64::from)
 }
 
-/// The pose a `Transform` gives in the parent's frame (`None`: the world). The rotation is `None` where
-/// the quaternion has no direction.
+/// The pose that a `Transform` gives in the parent's frame (`None`: the world). The rotation is `None` if the
+/// quaternion has no direction.
 pub(crate) fn read_pose(parent: Option<&Frame>, t: &Transform) -> (Vector, Option<Rotation>) {
     match parent {
         None => (vector_from_xyz(xyz(t.translation)), Rotation::from_f64(Rotation64::from_quat(t.rotation))),
@@ -220,8 +221,8 @@ pub(crate) fn read_pose(parent: Option<&Frame>, t: &Transform) -> (Vector, Optio
     }
 }
 
-/// The `Transform` that puts the thing now at `t` to a world pose: translation and rotation replaced,
-/// scale kept, in 2D also the depth and any tilt. In a parent that is flat, `t` stays.
+/// The `Transform` that moves an entity with the transform `t` to a world pose. Translation and rotation are
+/// replaced, scale is kept, in 2D also the depth and any tilt. In a flat parent `t` is unchanged.
 #[inline]
 pub(crate) fn write_pose(
     parent: Option<&Frame>,

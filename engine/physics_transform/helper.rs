@@ -1,4 +1,4 @@
-//! A system parameter that updates the pose of one entity from its `Transform` at once.
+//! A system parameter that updates the pose of one entity from its `Transform` immediately.
 
 use bevy_ecs::{
     entity::EntityNotSpawnedError,
@@ -29,7 +29,7 @@ pub struct PhysicsTransformHelper<'w, 's> {
 }
 
 impl PhysicsTransformHelper<'_, '_> {
-    /// The global transform of an entity from its `Transform` and those of its ancestors.
+    /// The global transform of an entity, from its `Transform` and its ancestors' transforms.
     pub fn compute_global_transform(
         &self,
         entity: Entity,
@@ -37,7 +37,7 @@ impl PhysicsTransformHelper<'_, '_> {
         self.transform_helper.compute_global_transform(entity)
     }
 
-    /// Sets the pose of an entity from its `Transform` and those of its ancestors, and returns it.
+    /// Sets the pose of an entity from its `Transform` and its ancestors' transforms, and returns the pose.
     pub fn update_physics_transform(
         &mut self,
         entity: Entity,
@@ -57,7 +57,7 @@ impl PhysicsTransformHelper<'_, '_> {
     }
 }
 
-/// Why a pose could not be updated.
+/// The reason why a pose could not be updated.
 #[derive(Debug, Error)]
 pub enum UpdatePhysicsTransformError {
     /// A component is missing.

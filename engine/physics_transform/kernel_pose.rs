@@ -10,7 +10,7 @@ pub(crate) fn world_pose(position: &Position, rotation: &Rotation) -> WorldPose 
     WorldPose::new(world_to_kernel(position.0), unit_rotation(rotation))
 }
 
-/// The pose exactly as in the components, to detect changes by the app. It may be invalid.
+/// The exact pose of the components, to detect changes by the app. It may be invalid.
 #[inline]
 pub(crate) fn said_pose(position: &Position, rotation: &Rotation) -> WorldPose {
     WorldPose::new(world_to_kernel(position.0), rotation.to_kernel())
@@ -26,7 +26,7 @@ pub(crate) fn filled_in(rotation: Rotation) -> Rotation {
     if rotation == Rotation::PLACEHOLDER { Rotation::IDENTITY } else { rotation }
 }
 
-/// Components of a pose of the kernel.
+/// Converts a pose of the kernel to components.
 #[inline(always)]
 pub(crate) fn pose_from_kernel(pose: WorldPose) -> (Position, Rotation) {
     (Position(world_from_kernel(pose.position)), Rotation::from_kernel(pose.rotation))

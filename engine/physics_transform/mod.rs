@@ -1,15 +1,15 @@
 //! Positions and rotations of bodies and colliders, and their synchronisation with `Transform`.
 //!
 //! - Before a step, transforms that the app changed are read into [`Position`] and [`Rotation`].
-//! - After it, the poses of bodies that moved are written back, relative to the parent if there is one.
-//! - If both were set since the last step, the pose wins over the transform, separately for position
-//!   and rotation.
+//! - After the step, the poses of bodies that moved are written back, relative to the parent if there is one.
+//! - If the app set both since the last step, the pose takes precedence over the transform, separately for
+//!   position and rotation.
 //! - Bodies move independently of their parents in the simulation. A change to a parent's `Transform` by the
 //!   app moves the bodies below it.
-//! - A kinematic body with [`FollowTransform`] goes where its transform is by velocity, and its transform
-//!   is not written.
+//! - A kinematic body with [`FollowTransform`] moves to its transform by velocity, and its transform is not
+//!   written.
 
-/// `$left * $right` for every mix of values, references and mutable references.
+/// Implements `$left * $right` for all combinations of values, references and mutable references.
 macro_rules! by_reference {
     ($left:ty, $right:ty => $out:ty, |$a:ident, $b:ident| $body:expr) => {
         by_reference!(@one $left, $right => $out, |$a, $b| $body);
@@ -66,16 +66,17 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
-/// Settings of the synchronisation between transforms and poses. Everything is on by default.
+/// Settings of the synchronisation between transforms and poses. All are on by default.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Default, Debug, PartialEq)]
 pub struct PhysicsTransformConfig {
-    /// Whether a change to an ancestor's `Transform` moves the bodies and colliders below, and whether their
-    /// `GlobalTransform` is updated before each step.
+    /// Whether a change to an ancestor's `Transform` moves the bodies and colliders below it, and whether
+    /// their `GlobalTransform` is updated before each step.
     pub propagate_before_physics: bool,
-    /// Whether changed transforms are read before a step. New bodies are always initialised from theirs.
+    /// Whether changed transforms are read before a step. New bodies are always initialised from their
+    /// transforms.
     pub transform_to_position: bool,
     /// Whether poses are written to transforms after a step.
     pub position_to_transform: bool,
@@ -112,11 +113,11 @@ pub enum PhysicsTransformSystems {
 #[deprecated(note = "renamed to `PhysicsTransformSystems`")]
 pub type PhysicsTransformSet = PhysicsTransformSystems;
 
-/// The rotation of an `f64` rotation; the identity if it cannot be normalised.
+/// Converts an `f64` rotation. Returns the identity if it cannot be normalised.
 pub(crate) fn rotation_from_f64(turn: rotation64::Rotation64) -> Rotation {
     Rotation::from_f64(turn).unwrap_or(Rotation::IDENTITY)
 }
 
-/// Lets the pose of an entity without a rigid body be written to its `Transform` after a step.
+/// Enables writing the pose of an entity without a rigid body to its `Transform` after a step.
 #[derive(Component, Default)]
 pub struct ApplyPosToTransform;

@@ -1,4 +1,4 @@
-//! The plugins of the hierarchy's tree, and of the synchronisation between poses and transforms.
+//! The plugins of the transform tree, and of the synchronisation between poses and transforms.
 
 use bevy_app::{App, FixedPostUpdate, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::{change_detection::CheckChangeTicks, intern::Interned, prelude::*, schedule::ScheduleLabel};
@@ -95,11 +95,11 @@ impl Plugin for PhysicsTransformPlugin {
     }
 }
 
-/// Adds the tree and the scan of `Transform`. The first plugin that needs it adds it.
+/// Adds the tree and the scan of `Transform`. It is added by the first plugin that needs it.
 pub(crate) struct TransformTreePlugin(pub(crate) Interned<dyn ScheduleLabel>);
 
 impl TransformTreePlugin {
-    /// Adds the plugin unless it was added.
+    /// Adds the plugin unless it was already added.
     pub(crate) fn ensure(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
         if !app.is_plugin_added::<Self>() {
             app.add_plugins(Self(schedule));

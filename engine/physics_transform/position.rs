@@ -19,15 +19,16 @@ use crate::math::{Scalar, Vector, vector_from_xyz};
 
 /// The world position of a rigid body or collider, in metres.
 ///
-/// The simulation reads and writes this and [`Rotation`](super::Rotation); `Transform` is synchronised with
-/// them. To place an entity, set either; if both were set since the last step, the position wins. The
-/// position of a collider that is a child of a body follows from the body and the collider's
+/// The simulation reads and writes this component and [`Rotation`](super::Rotation); `Transform` is
+/// synchronised with them. To move an entity, set either the position or the `Transform`; if both were set
+/// since the last step, the position takes precedence. A collider on a child of a body gets its position from
+/// the body and from its
 /// [`ColliderTransform`](crate::collision::collider::collider_transform::ColliderTransform).
 ///
-/// A clone of an entity has its pose, unless the app sets another `Transform` or position before
-/// the next step.
+/// A clone of an entity has the same pose, unless the app sets another `Transform` or position before the
+/// next step.
 ///
-/// A nested body (a body that is a child of another) moves on its own: the simulated motion of its parent
+/// A nested body (a body that is a child of another) moves independently: the simulated motion of its parent
 /// does not change its position.
 ///
 /// ```
@@ -51,11 +52,11 @@ pub struct Position(pub Vector);
 
 crate::type_path::type_path!(Position, "physics_transform::transform");
 
-/// The original of each clone that has not got its [`Position`] yet.
+/// The original of each clone that has no [`Position`] yet.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Originals(pub(super) EntityHashMap<Entity>);
 
-/// Clones the position, and notes that the app did not give it.
+/// Clones the position, and records that the app did not set it.
 fn clone_position(source: &SourceComponent, context: &mut ComponentCloneCtx) {
     let Some(&position) = source.read::<Position>() else { return };
     let (original, clone) = (context.source(), context.target());
@@ -68,8 +69,8 @@ fn clone_position(source: &SourceComponent, context: &mut ComponentCloneCtx) {
 }
 
 impl Position {
-    /// Placeholder for the position of the `Transform`. It is replaced when the entity gets its
-    /// body or collider.
+    /// Placeholder that is replaced by the position of the `Transform` when the entity gets its body or
+    /// collider.
     pub const PLACEHOLDER: Self = Self(Vector::MAX);
 
     /// The position at a point, in metres.

@@ -1,4 +1,4 @@
-//! Where bodies are before constraints of the app move them.
+//! The displacements of bodies before constraints of the app move them.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::{component::Component, reflect::ReflectComponent};
@@ -8,20 +8,20 @@ use derive_more::From;
 use super::Rotation;
 use crate::math::Vector;
 
-/// The displacement of a body since the start of the step before constraints moved it, in m; see
+/// The displacement of a body since the start of the step, stored before constraints move the body, in m; see
 /// [`SolverBody::delta_position`](crate::dynamics::solver::solver_body::SolverBody::delta_position).
 ///
-/// Awake bodies have it while constraints of the app are solved by XPBD.
+/// Awake bodies have this component while XPBD solves constraints of the app.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 pub struct PreSolveDeltaPosition(pub Vector);
 
 crate::type_path::type_path!(PreSolveDeltaPosition, "physics_transform::transform");
 
-/// The rotation of a body since the start of the step before constraints turned it; see
+/// The rotation of a body since the start of the step, stored before constraints rotate the body; see
 /// [`SolverBody::delta_rotation`](crate::dynamics::solver::solver_body::SolverBody::delta_rotation).
 ///
-/// Awake bodies have it while constraints of the app are solved by XPBD.
+/// Awake bodies have this component while XPBD solves constraints of the app.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 pub struct PreSolveDeltaRotation(pub Rotation);

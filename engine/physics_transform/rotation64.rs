@@ -1,4 +1,4 @@
-//! 3D rotations in `f64` scalars; see [`frame`](super::frame) for the reason.
+//! 3D rotations in `f64` scalars. [`frame`](super::frame) explains the reason.
 
 use bevy_math::Quat;
 

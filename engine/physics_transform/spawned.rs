@@ -1,4 +1,4 @@
-//! Initialises the poses of new entities: from their transforms, unless the app gave them.
+//! Initialises the poses of new entities from their transforms, unless the app set the poses.
 
 use bevy_ecs::{
     entity::EntityHashSet,
@@ -20,15 +20,15 @@ use crate::{dynamics::rigid_body::RigidBody, math::Vector, noted::Noted, schedul
 /// An entity that got its [`Position`] since the last step.
 #[derive(Clone, Debug)]
 pub(crate) struct Spawned {
-    /// Whether the app gave the position and the rotation.
+    /// Whether the app set the position and the rotation.
     given: [bool; 2],
     /// The pose after the first initialisation.
     first: (Position, Option<Rotation>),
-    /// If it is a clone: the pose that the transform of the original gave.
+    /// For a clone, the pose given by the original's transform.
     cloned: Option<(Vector, Option<Rotation>)>,
 }
 
-/// Entities to be initialised, in order of spawning, and those that got a [`Rotation`].
+/// Entities to initialise, in order of spawning, and entities that got a [`Rotation`].
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct SpawnQueue(Noted<Spawned>, Noted);
 
@@ -55,7 +55,7 @@ pub(crate) struct Initialiser<'w, 's> {
 }
 
 impl Initialiser<'_, '_> {
-    /// The pose that the transform of an entity gives.
+    /// The pose given by the transform of an entity.
     fn read(&self, entity: Entity) -> Option<(Vector, Option<Rotation>)> {
         let transform = self.transforms.get(entity).ok()?;
         let parent = parent_frame(entity, &self.parents, |e| self.transforms.get(e).ok().copied());
@@ -66,7 +66,7 @@ impl Initialiser<'_, '_> {
         core::iter::successors(Some(entity), |&at| self.parents.get(at).ok().map(ChildOf::parent)).count()
     }
 
-    /// Warns of a transform that is not finite, if a pose was to be initialised from it.
+    /// Warns of a transform that is not finite, if a pose needs to be initialised from it.
     fn warn_non_finite(&self, entity: Entity, given: [bool; 2], reported: &mut EntityHashSet) {
         let Ok(transform) = self.transforms.get(entity) else { return };
         if given != [true; 2]
@@ -76,7 +76,8 @@ impl Initialiser<'_, '_> {
         }
     }
 
-    /// Writes what the app gave to the `Transform`, and takes the rest from the `Transform`.
+    /// Writes the values that the app set to the `Transform`, and initialises the others from the
+    /// `Transform`.
     fn initialise(&mut self, entity: Entity, given: [bool; 2]) {
         let Ok((mut position, mut rotation, ..)) = self.poses.get_mut(entity) else { return };
         let transform = self.transforms.get(entity).copied().unwrap_or_default();
@@ -106,7 +107,7 @@ impl Initialiser<'_, '_> {
     }
 }
 
-/// Initialises a new [`Position`] at once, so that no system reads a placeholder. Ancestors may still be
+/// Initialises a new [`Position`] immediately, so that no system reads a placeholder. Ancestors may still be
 /// missing or change, so [`initialise_poses`] checks again before the step.
 pub(crate) fn initialise_added(
     added: On<Add, Position>,
@@ -130,7 +131,7 @@ pub(crate) fn initialise_added(
     queue.0.put(entity, Spawned { given, first: (*position, rotation.copied()), cloned: None });
 }
 
-/// Records new rotations of entities that had a position before.
+/// Records new rotations of entities that already had a position.
 pub(crate) fn note_rotation(added: On<Add, Rotation>, mut queue: ResMut<SpawnQueue>) {
     queue.1.note(added.event_target());
 }
@@ -149,8 +150,8 @@ pub(crate) fn initialise_poses(
     spawned.sort_by_key(|&(depth, ..)| depth);
     for (_, entity, Spawned { given, first, cloned }) in spawned {
         let Ok((position, rotation, _, false)) = initialiser.poses.get(entity) else { continue };
-        // A pose set after spawning counts as given, and so does that of a clone whose transform is that of
-        // the original.
+        // A pose that the app set after spawning counts as given. The pose of a clone also counts as given if
+        // the clone has the same transform as the original.
         let like = cloned.zip(initialiser.read(entity)).map(|(a, b)| [a.0 == b.0, a.1 == b.1]);
         let like = like.unwrap_or_default();
         let given = [

@@ -1,9 +1,9 @@
 //! Synchronises `Transform` with [`Position`] and [`Rotation`]: transforms that the app changed are read
 //! before a step, poses that changed are written after it.
 //!
-//! A `Transform` counts as changed by the app if its bits differ from what the write-back would store for the
-//! current pose. So rounding never perturbs the pose of an untouched body, and the sync has no state to be
-//! stored or rolled back. Change ticks only narrow the search.
+//! A `Transform` counts as changed by the app if its bits differ from the bits that the write-back would
+//! store for the current pose. Therefore rounding never perturbs the pose of an untouched body, and the
+//! synchronisation has no state to store or roll back. Change ticks only narrow the search.
 
 use bevy_ecs::{
     change_detection::{CheckChangeTicks, ContiguousRef, Tick},
@@ -33,15 +33,15 @@ use crate::{
 /// Ticks of the last reads and writes.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct SyncTicks {
-    /// The last scan of `Transform`.
+    /// The tick of the last scan of `Transform`.
     scan: Tick,
-    /// The last two write-backs, the later one first: one follows the solver, one the step. Transforms that
-    /// they wrote have these ticks.
+    /// The ticks of the last two write-backs, the later first: one follows the solver, the other the step.
+    /// The transforms that they wrote have these ticks.
     writeback: [Tick; 2],
-    /// The last initialisation and the last read. Poses that they wrote have these ticks. They came from
-    /// transforms, so they need not be written back.
+    /// The ticks of the last initialisation and the last read. The poses that they wrote have these ticks.
+    /// These poses came from transforms, so they need not be written back.
     pub(super) read: [Tick; 2],
-    /// Entities whose transform is not finite and was reported.
+    /// Entities with a transform that is not finite and was reported.
     pub(super) reported: EntityHashSet,
 }
 
@@ -52,7 +52,7 @@ impl SyncTicks {
     }
 }
 
-/// The frame of an entity's parent in the world, through all ancestors; `None` for a root. An ancestor
+/// The frame of an entity's parent in the world, through all ancestors. `None` for a root. An ancestor
 /// without a transform counts as the identity.
 pub(crate) fn parent_frame(
     entity: Entity,
@@ -72,8 +72,8 @@ pub(crate) fn parent_frame(
     Some(chain.fold(Frame::IDENTITY, |frame, t| frame.child(&t)))
 }
 
-/// Finds transforms that changed since the last scan, except by the write-back. This is the only scan over
-/// all entities with a `Transform`.
+/// Finds transforms that changed since the last scan, except by the write-back. No other system scans all
+/// entities with a `Transform`.
 pub(crate) fn find_changed_transforms(
     transforms: Query<(Entity, Ref<Transform>, Option<Ref<GlobalTransform>>, Has<Position>, Has<Children>)>,
     tree: Res<TransformTree>,
@@ -112,9 +112,9 @@ pub(crate) fn find_changed_transforms(
     ticks.scan = system.this_run();
 }
 
-/// Updates the `GlobalTransform` of bodies, colliders and their ancestors, if their own transform or one
-/// above changed since the last step or was written after it. Bevy propagates once a frame, after any number
-/// of steps, and handles all other entities.
+/// Updates the `GlobalTransform` of bodies, colliders and their ancestors, if their own transform or a
+/// transform above changed since the last step or was written after it. Bevy propagates once a frame, after
+/// any number of steps, and updates all other entities.
 pub(crate) fn propagate_global_transforms(
     changes: Res<TreeChanges>,
     mut tree: ResMut<TransformTree>,
@@ -171,11 +171,11 @@ pub struct TransformReader<'w, 's> {
     poses: Query<'w, 's, Readable, Without<FollowsBody>>,
 }
 
-/// A pose that a transform is read into, and how far it followed it.
+/// A pose that receives a transform, and the state of following it.
 type Readable = (&'static mut Position, Option<&'static mut Rotation>, Option<&'static Followed>);
 
-/// Reads a transform into a pose, separately for position and rotation: where its bits differ from what would
-/// be written for the pose, and the pose is free.
+/// Reads a transform into a pose, separately for position and rotation: if its bits differ from the bits that
+/// would be written for the pose, and the app did not set the pose.
 fn read_into(
     mut position: Mut<Position>,
     rotation: Option<Mut<Rotation>>,
@@ -198,8 +198,8 @@ fn read_into(
     }
 }
 
-/// Reads transforms that the app changed since the last step, or whose ancestors' transforms it changed, into
-/// [`Position`] and [`Rotation`]. A position or rotation that was itself set since then is kept.
+/// Reads transforms into [`Position`] and [`Rotation`], if the app changed the entity's or an ancestor's
+/// transform since the last step. A position or rotation that was also set since then is kept.
 pub fn transform_to_position(reader: TransformReader, system: SystemChangeTick, _: OnThisThread) {
     let TransformReader { mut tree, changes, mut ticks, config, transforms, parents, mut poses } = reader;
     ticks.read[1] = system.this_run();
@@ -239,8 +239,7 @@ type Written = Or<(With<RigidBody>, With<ApplyPosToTransform>)>;
 /// A pose, with its change ticks.
 type Pose = (Entity, Ref<'static, Position>, Ref<'static, Rotation>);
 
-/// A pose to be read or written, whether it is that of a disabled body, and how far it followed
-/// its transform.
+/// A pose to read or write, whether its body is disabled, and the state of following its transform.
 type PoseMut =
     (&'static mut Position, &'static mut Rotation, Has<RigidBodyDisabled>, Option<&'static Followed>);
 
@@ -264,17 +263,17 @@ pub struct TransformWriter<'w, 's> {
     changes: ResMut<'w, TreeChanges>,
     physical: Physical<'w, 's>,
     threads: Res<'w, Threads>,
-    /// Entities that each thread found and that are written one by one.
+    /// Entities that each thread found and that must be written one by one.
     found: Local<'s, Vec<Vec<Entity>>>,
 }
 
-/// Writes poses that changed since the last write-back to `Transform`: of bodies, and of entities with
-/// [`ApplyPosToTransform`]. Bodies below a moved one keep their world pose, so their transforms are written,
-/// too. Disabled bodies below it keep their transform, and are carried along. Scale is kept; in 2D also
-/// depth and tilt.
+/// Writes poses that changed since the last write-back to `Transform`, for bodies and for entities with
+/// [`ApplyPosToTransform`]. Bodies below a moved body keep their world pose, so their transforms are also
+/// written. Disabled bodies below it keep their transform, and move with it. Scale is kept; in 2D also depth
+/// and tilt.
 ///
-/// It runs twice: when the solver is done, so that a `Transform` that the app sets later in the step is newer
-/// than the pose, and after the step, for poses that the app sets there.
+/// It runs twice. The first run follows the solver, so that a `Transform` that the app sets later in the step
+/// is newer than the pose. The second run follows the step, for poses that the app sets in the step.
 pub fn position_to_transform(mut writer: TransformWriter, system: SystemChangeTick, _: OnThisThread) {
     let TransformWriter {
         mut tree,

@@ -1,14 +1,14 @@
 //! The part of Bevy's hierarchy with physics in it: entities with a [`Position`] and their ancestors, with
-//! links down to those only.
+//! child links only to these entities.
 //!
-//! A level may have a hundred thousand pictures and one body under one root. Walking `Children` from the
-//! root would visit all of them; this copy of the hierarchy visits the body only. Roots without physics
-//! below need no node. Observers append to one queue. [`TransformTree::follow`] alone changes links, before
-//! a step and again before transforms are written, by the hierarchy as it is then, so that the order of
+//! A level may have a hundred thousand images and one body under one root. Traversing `Children` from the
+//! root would visit all of them; this copy of the hierarchy visits only the body. Roots without physics below
+//! need no node. Observers append to one queue. Only [`TransformTree::follow`] changes links, before a step
+//! and again before transforms are written, according to the hierarchy at that time. Therefore the order of
 //! changes does not matter.
 //!
 //! Each node counts the poses below it that are written to transforms: a body with only its colliders below
-//! is written like one without children.
+//! is written like a body without children.
 
 use bevy_ecs::{
     change_detection::Tick, entity::EntityHashMap, entity_disabling::Disabled, prelude::*, query::Allow,
@@ -19,10 +19,10 @@ use bevy_transform::components::Transform;
 use super::{ApplyPosToTransform, Position, Rotation};
 use crate::{dynamics::rigid_body::RigidBody, noted::Noted, schedule::OnThisThread};
 
-/// On a collider on another entity than its body: its pose follows from the body.
+/// Marks a collider on another entity than its body. The body determines its pose.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(crate) struct FollowsBody {
-    /// The nearest body above, as the hierarchy gives it. `None` if the app inserted the link.
+    /// The nearest body above in the hierarchy. `None` if the app inserted the link.
     #[entities]
     pub(crate) above: Option<Entity>,
 }
@@ -34,7 +34,7 @@ pub(crate) struct HierarchyQueue {
     noted: Noted,
     /// Despawned entities that are still in the tree.
     gone: Vec<Entity>,
-    /// Entities that lost Bevy's `Disabled`. Searches for changes have not seen them.
+    /// Entities that lost Bevy's `Disabled`. Scans for changes have not seen them.
     enabled: Noted,
 }
 
@@ -63,17 +63,17 @@ impl HierarchyQueue {
 /// Changes found by [`update_tree`], for later systems of this step.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct TreeChanges {
-    /// The queue of this step, each entity once, in order.
+    /// The queue of this step, with each entity once, in order.
     pub(crate) queued: Vec<Entity>,
     /// Entities whose parent changed, or that were enabled.
     pub(crate) reparented: Vec<Entity>,
-    /// Entities that the last step's write-back has handled. They are still in the queue.
+    /// Entities that the last step's write-back already processed. They are still in the queue.
     pub(crate) early: Vec<Entity>,
-    /// Entities whose `Transform` may differ from the pose, because it changed, or the entity was reparented
-    /// or enabled. Descendants may be missing.
+    /// Entities whose `Transform` may differ from the pose, because it changed, or because the entity was
+    /// reparented or enabled. Descendants may be missing.
     pub(crate) transforms: Vec<Entity>,
-    /// Entities whose `Transform` was written after a step, and whose `GlobalTransform` was not
-    /// updated since.
+    /// Entities whose `Transform` was written after a step, and whose `GlobalTransform` was not updated
+    /// since.
     pub(crate) written: Vec<Entity>,
 }
 
@@ -83,26 +83,26 @@ struct Node {
     /// Index of this node among the parent's children.
     slot: usize,
     children: Vec<Entity>,
-    /// Whether its pose is written to its transform. Only valid with a parent.
+    /// Whether the node's pose is written to its transform. Only valid with a parent.
     is_written: bool,
-    /// Number of nodes below whose pose is written.
+    /// Number of nodes below whose poses are written.
     written_below: usize,
     visit: u64,
 }
 
 impl Node {
-    /// Number of poses that are written here and below.
+    /// Number of poses that are written at this node and below.
     fn written(&self) -> usize {
         usize::from(self.is_written) + self.written_below
     }
 }
 
-/// The nodes. See the module.
+/// The nodes. See the [module](self).
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct TransformTree {
     nodes: EntityHashMap<Node>,
     walk: u64,
-    /// Number of entities that walks have visited.
+    /// Number of entities that traversals have visited.
     pub(crate) visited: u64,
 }
 
@@ -127,24 +127,24 @@ impl TransformTree {
         self.nodes.get(&entity)?.parent
     }
 
-    /// Whether the entity's transform is relative to another, or poses written below are relative to it.
+    /// Whether the entity's transform is relative to a parent, or poses written below are relative to it.
     pub(crate) fn is_tied(&self, entity: Entity) -> bool {
         self.nodes.get(&entity).is_some_and(|node| node.parent.is_some() || node.written_below > 0)
     }
 
-    /// The tracked children: those with physics, or with physics below.
+    /// The tracked children: entities with physics, or with physics below.
     pub(crate) fn children(&self, entity: Entity) -> &[Entity] {
         self.nodes.get(&entity).map_or(&[], |node| &node.children)
     }
 
-    /// Begins a series of walks that visit no entity twice.
+    /// Begins a series of traversals that visit no entity twice.
     pub(crate) fn begin_walk(&mut self) {
         self.walk += 1;
     }
 
     /// Visits `root` and the tracked entities below it, parents first. `visit` gets its own result for the
     /// parent, and returns `None` to skip descendants. Entities that were visited since
-    /// [`begin_walk`](Self::begin_walk) are skipped with all descendants.
+    /// [`begin_walk`](Self::begin_walk) are skipped with all their descendants.
     pub(crate) fn descend<C: Clone>(
         &mut self,
         root: Entity,
@@ -166,9 +166,9 @@ impl TransformTree {
         }
     }
 
-    /// Updates the links of entities. `moved` receives those whose parent changed.
+    /// Updates the links of entities. `moved` receives the entities whose parent changed.
     ///
-    /// Removed links are processed first: together with new ones they could form a cycle.
+    /// Removed links are processed first, because together with new links they could form a cycle.
     pub(crate) fn follow(
         &mut self,
         entities: &[Entity],
@@ -193,13 +193,13 @@ impl TransformTree {
         }
     }
 
-    /// The parent of an entity, if it has physics in it or below.
+    /// The parent of an entity that has physics in it or below.
     fn wanted_parent(&self, entity: Entity, parents: &Parents, physical: &Physical) -> Option<Entity> {
         let tracked = physical.contains(entity) || !self.children(entity).is_empty();
         if tracked { parents.get(entity).ok().map(ChildOf::parent) } else { None }
     }
 
-    /// Links `entity` below `parent`, and adds ancestors that are not tracked yet.
+    /// Links `entity` below `parent`, and adds untracked ancestors.
     fn link(&mut self, entity: Entity, parent: Entity, parents: &Parents, physical: &Physical) {
         let (mut entity, mut parent) = (entity, parent);
         loop {
@@ -253,7 +253,7 @@ impl TransformTree {
         }
     }
 
-    /// Removes a node without children that has no parent or no physics.
+    /// Removes a node that has no children, and no parent or no physics.
     fn prune(&mut self, entity: Entity, physical: &Physical) {
         let Some(node) = self.nodes.get(&entity) else { return };
         if !node.children.is_empty() || (node.parent.is_some() && physical.contains(entity)) {
@@ -269,7 +269,7 @@ impl TransformTree {
         self.nodes.len()
     }
 
-    /// Panics if a link is not mutual or, with an empty queue, differs from the hierarchy.
+    /// Panics if a link is not mutual, or if the queue is empty and a link differs from the hierarchy.
     #[cfg(test)]
     pub(crate) fn check(&self, world: &World) {
         if !world.resource::<HierarchyQueue>().is_empty() {
@@ -331,7 +331,7 @@ pub(crate) fn enqueue<E: EntityEvent, B: Bundle>(
 }
 
 /// Appends an entity that loses Bevy's `Disabled`, if there is physics in it or below. If the app set the
-/// pose after the transform, the pose counts as changed instead, so that the next write-back finds it.
+/// pose after the transform, the pose is marked as changed instead, and the next write-back finds it.
 pub(super) fn enqueue_enabled(
     event: On<Remove, Disabled>,
     mut queue: ResMut<HierarchyQueue>,

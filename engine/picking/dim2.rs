@@ -18,14 +18,14 @@ pub struct PhysicsPickingSettings {
     /// Whether only cameras and entities with [`PhysicsPickable`](super::PhysicsPickable) take part.
     /// `false` by default.
     pub require_markers: bool,
-    /// The z of the plane in which pointers meet colliders, in units of the world. 0 by default. It matters
-    /// where the camera is in perspective or turned.
+    /// The z of the plane in which pointers hit colliders, in world units. 0 by default. It matters if the
+    /// camera is in perspective or rotated.
     pub z_plane: f32,
 }
 
 crate::type_path::type_path!(PhysicsPickingSettings, "picking");
 
-/// What the ray of a pointer meets: all colliders where it crosses the plane.
+/// The hits of a pointer's ray: all colliders at the point where it crosses the plane.
 pub(super) fn hits_along(
     (camera, ray): (Entity, Ray3d),
     settings: &PhysicsPickingSettings,
@@ -36,14 +36,14 @@ pub(super) fn hits_along(
     let depth_of = |z: f32| (z - ray.origin.z) / ray.direction.z;
     let depth = depth_of(settings.z_plane);
     let point = ray.get_point(depth);
-    // Nothing where the ray runs along the plane or away from it.
+    // There are no hits if the ray runs along the plane or away from it.
     if !(depth >= 0.0 && point.is_finite()) {
         return Vec::new();
     }
     let mut hits = Vec::new();
     queries.point_intersections_callback(point.truncate().adjust_precision(), filter, |entity| {
         let depth = height(targets, entity).map_or(depth, depth_of);
-        // What lies behind the camera is not seen.
+        // Colliders behind the camera are not visible.
         if depth >= 0.0 && targets.is_met(entity, settings.require_markers) {
             hits.push((entity, HitData::new(camera, depth, Some(point), None)));
         }

@@ -22,7 +22,7 @@ pub struct PhysicsPickingSettings {
 
 crate::type_path::type_path!(PhysicsPickingSettings, "picking");
 
-/// What the ray of a pointer meets: colliders up to the first that hides the others.
+/// The hits of a pointer's ray: colliders up to the first that hides the others.
 pub(super) fn hits_along(
     (camera, ray): (Entity, Ray3d),
     settings: &PhysicsPickingSettings,
@@ -44,7 +44,7 @@ pub(super) fn hits_along(
     hits
 }
 
-/// Whether an entity hides what is behind it. In the plane Bevy decides that, by depth.
+/// Whether an entity hides the entities behind it. In 2D Bevy decides that, by depth.
 fn is_opaque(targets: &PickingTargets, entity: Entity) -> bool {
     !targets.states.get(entity).is_ok_and(|(pickable, ..)| pickable.is_some_and(|p| !p.should_block_lower))
 }

@@ -1,21 +1,21 @@
 //! A backend for Bevy's picking: pointers hover, press and drag colliders.
 //!
 //! Add [`PhysicsPickingPlugin`], and observe `Pointer` events on entities with colliders. An entity with
-//! [`Pickable::IGNORE`] is passed over; one whose [`Pickable`] does not block what is below lets the next
-//! be picked too.
+//! [`Pickable::IGNORE`] is skipped. An entity whose [`Pickable`] does not block lower entities lets the next
+//! one be picked too.
 //!
 //! | I want to | use |
 //! |---|---|
-//! | pick only what is marked | [`PhysicsPickingSettings::require_markers`] and [`PhysicsPickable`] |
+//! | pick only marked entities | [`PhysicsPickingSettings::require_markers`] and [`PhysicsPickable`] |
 //! | choose layers, or exclude entities, per camera | [`PhysicsPickingFilter`] |
 //! | know where a collider was picked | `position`, `normal` and `depth` of Bevy's [`HitData`](bevy_picking::backend::HitData), in metres |
 //!
 //! In 2D the ray of the pointer is followed to the plane of the bodies, so that cameras may be in perspective
-//! or turned. Colliders that overlap are picked by the z of their `GlobalTransform`, the one nearest to the
-//! camera first. The normal is absent.
+//! or rotated. Overlapping colliders are picked by the z of their `GlobalTransform`, nearest to the camera
+//! first. The normal is absent.
 //!
-//! In 3D a ray that begins inside of a collider hits its boundary from within: a camera in a large sensor
-//! picks what is in the sensor, too.
+//! In 3D a ray that starts inside a collider hits its boundary from within: a camera in a large sensor also
+//! picks colliders in the sensor.
 //!
 //! ```
 //! # use avian::prelude::*;

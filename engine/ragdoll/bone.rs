@@ -48,7 +48,7 @@ impl Bone {
         Self::RightShin,
     ];
 
-    /// The bone on which it hangs. None for the pelvis.
+    /// The bone to which it is joined. None for the pelvis.
     pub const fn parent(self) -> Option<Self> {
         match self {
             Self::Pelvis => None,

@@ -14,7 +14,7 @@ use crate::{
     physics_transform::Rotation,
 };
 
-/// Where a joint is.
+/// The place of a joint.
 pub(super) struct Place {
     pub(super) bodies: [Entity; 2],
     pub(super) anchors: [Vector; 2],
@@ -68,7 +68,7 @@ pub(super) fn spawn_joint(
     commands.spawn(joint).id()
 }
 
-/// The joints of all ragdolls, to set the pose to which they are driven.
+/// The joints of all ragdolls, for setting the pose to which they are driven.
 ///
 /// ```
 /// # use avian2d::prelude::*;
@@ -85,8 +85,7 @@ pub struct RagdollJoints<'w, 's> {
 }
 
 impl RagdollJoints<'_, '_> {
-    /// Sets the wanted rotation of a bone relative to its parent; the identity is that in which
-    /// it was spawned.
+    /// Sets the wanted rotation of a bone relative to its parent. The identity is the rotation at spawning.
     pub fn set_target(&mut self, ragdoll: &Ragdoll, bone: Bone, rotation: impl Into<Rotation>) {
         let target = rotation.into().as_radians();
         if let Some(joint) = ragdoll.joint(bone)

@@ -15,7 +15,7 @@ use crate::{
     physics_transform::Rotation,
 };
 
-/// Where a joint is.
+/// The place of a joint.
 pub(super) struct Place {
     pub(super) bodies: [Entity; 2],
     pub(super) anchors: [Vector; 2],
@@ -36,7 +36,7 @@ pub(super) fn volume(collider: &Collider) -> f32 {
     collider.mass(1.0)
 }
 
-/// How the joint of a bone turns.
+/// The freedom of a bone's joint.
 enum Freedom {
     /// A ball: the direction in which the parent sees the middle of all swings, the greatest swing and the
     /// greatest twist.
@@ -45,7 +45,7 @@ enum Freedom {
     Hinge([Scalar; 2]),
 }
 
-/// What a human can do. Arms and legs turn to the front, which is at negative z.
+/// The joint limits of a human. Arms and legs turn to the front, which is at negative z.
 fn freedom(bone: Bone) -> Freedom {
     let side = bone.side();
     let ball = |toward, swing, twist| Freedom::Ball { toward, swing, twist };
@@ -69,7 +69,7 @@ pub(super) fn spawn_joint(
     let Place { bodies: [parent, child], anchors: [anchor1, anchor2] } = place;
     match freedom(bone) {
         Freedom::Ball { toward, swing, twist } => {
-            // The twist axis is y, upwards on both.
+            // The twist axis is y, upwards on both bodies.
             let basis = Quaternion::from_rotation_arc(Vector::Y, toward.normalize());
             let mut joint = SphericalJoint::new(parent, child)
                 .with_local_anchor1(anchor1)
@@ -99,7 +99,7 @@ pub(super) fn spawn_joint(
     }
 }
 
-/// The joints of all ragdolls, to set the pose to which they are driven.
+/// The joints of all ragdolls, for setting the pose to which they are driven.
 ///
 /// ```
 /// # use avian3d::prelude::*;
@@ -119,8 +119,8 @@ pub struct RagdollJoints<'w, 's> {
 }
 
 impl RagdollJoints<'_, '_> {
-    /// Sets the wanted rotation of a bone relative to its parent; the identity is that in which it was
-    /// spawned. Elbows and knees take its turn about the x axis only.
+    /// Sets the wanted rotation of a bone relative to its parent. The identity is the rotation at spawning.
+    /// Elbows and knees take only the turn about the x axis.
     pub fn set_target(&mut self, ragdoll: &Ragdoll, bone: Bone, rotation: impl Into<Rotation>) {
         let (Some(joint), Rotation(rotation)) = (ragdoll.joint(bone), rotation.into()) else { return };
         if let Ok(mut ball) = self.balls.get_mut(joint)

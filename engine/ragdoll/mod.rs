@@ -1,8 +1,8 @@
-//! [`HumanRagdoll`]: a human of capsules that hang together by joints. Beyond Avian.
+//! [`HumanRagdoll`]: a human made of capsules connected by joints. Beyond Avian.
 //!
-//! Eleven bones: pelvis, chest, head, and two for each arm and leg. Their joints have the limits of a
-//! human's, and neighbours pass through each other. With a drive, motors hold the bones in a pose, up to a
-//! torque: [`RagdollJoints`] sets it in any frame.
+//! Eleven bones: pelvis, chest, head, and two for each arm and leg. The joints have human limits, and
+//! neighbouring bones do not collide. With a drive, motors hold the bones in a pose, up to a maximum torque:
+//! [`RagdollJoints`] sets the pose in any frame.
 //!
 //! ```
 //! # use avian::prelude::*;
@@ -38,18 +38,18 @@ use crate::{
 };
 use dim::Place;
 
-/// The measures of a ragdoll that is to be spawned.
+/// Settings for spawning a ragdoll.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HumanRagdoll {
     /// From foot to crown, in metres. 1.8 by default.
     pub height: Scalar,
-    /// Of all bones, in kg. 75 by default.
+    /// The mass of all bones, in kg. 75 by default.
     pub mass: Scalar,
-    /// The rate at which joints lose velocity, in 1/s. 10 by default; less lets limbs swing on for long, and
-    /// heaps sleep late or never.
+    /// The rate at which joints lose velocity, in 1/s. 10 by default. With a smaller rate limbs swing for
+    /// long, and heaps sleep late or never.
     pub damping: Scalar,
-    /// The motor of each joint, if there is one. Its targets do not count: all joints are driven to the pose
-    /// in which it is spawned until [`RagdollJoints`] says otherwise. None by default.
+    /// The motor of each joint, if there is one. Its targets are ignored: all joints are driven to the pose
+    /// at spawning until [`RagdollJoints`] sets another one. None by default.
     pub drive: Option<AngularMotor>,
 }
 
@@ -72,14 +72,14 @@ impl HumanRagdoll {
         self
     }
 
-    /// Has all joints driven by a motor.
+    /// Drives all joints with a motor.
     pub const fn with_drive(mut self, motor: AngularMotor) -> Self {
         self.drive = Some(motor);
         self
     }
 
-    /// Spawns the bones, each a dynamic body with a capsule, and their joints. The pose is that of the hips;
-    /// its scale does not count. The pelvis gets the [`Ragdoll`].
+    /// Spawns the bones, each a dynamic body with a capsule, and their joints. The pose is the pose of the
+    /// hips; its scale is ignored. The pelvis gets the [`Ragdoll`] component.
     ///
     /// A height or a mass that is not positive and finite becomes the default, with a warning.
     pub fn spawn(&self, commands: &mut Commands, pose: Transform) -> Ragdoll {

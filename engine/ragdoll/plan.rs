@@ -1,12 +1,12 @@
-//! The measures of a human, as parts of its height and mass. After D. A. Winter, "Biomechanics and Motor
+//! The measures of a human, relative to its height and mass. After D. A. Winter, "Biomechanics and Motor
 //! Control of Human Movement": lengths of segments (figure 4.1) and their masses (table 4.1), hands with
-//! forearms and feet with shins. Thicknesses are chosen so that neighbours overlap and others do not.
+//! forearms and feet with shins. Thicknesses are chosen so that only neighbouring bones overlap.
 
 use super::bone::Bone;
 use crate::math::Scalar;
 
-/// A bone, in the plane of the chest, from the middle of the hips, with arms and legs hanging down. Lengths
-/// are parts of the height.
+/// A bone in the plane of the chest, relative to the middle of the hips, with arms and legs hanging down.
+/// Lengths are parts of the height.
 #[derive(Clone, Copy)]
 pub(super) struct Plan {
     /// The ends of the capsule's segment.
@@ -15,7 +15,7 @@ pub(super) struct Plan {
     pub(super) radius: Scalar,
     /// Part of the mass.
     pub(super) mass: Scalar,
-    /// Where it hangs on its parent.
+    /// The joint with the parent.
     pub(super) joint: [Scalar; 2],
 }
 

@@ -22,15 +22,15 @@ use core::time::Duration;
 
 use crate::threads::Threads;
 
-/// Adds [`PhysicsSchedule`], the clocks, the system sets, and the system that takes a step in each run of the
+/// Adds [`PhysicsSchedule`], the clocks, the system sets, and the system that takes one step per run of the
 /// hosting schedule.
 ///
-/// Without it there are no clocks and no step is taken.
+/// Without this plugin there are no clocks and no step is taken.
 ///
-/// [`FixedPostUpdate`], the default, gets Bevy's single-threaded executor: a step is parallel inside of its
-/// systems, and to hand its systems from thread to thread takes longer than a step of some hundred bodies.
-/// Systems of the app in [`FixedPostUpdate`] then run one after the other, too. If that is too slow, set
-/// another executor after the plugin is added; other hosting schedules keep theirs.
+/// [`FixedPostUpdate`], the default, gets Bevy's single-threaded executor: a step is parallel inside its
+/// systems, and moving systems between threads takes longer than a step of some hundred bodies. The app's
+/// systems in [`FixedPostUpdate`] then also run one after the other. If that is too slow, set another
+/// executor after the plugin is added. Other hosting schedules keep their executor.
 pub struct PhysicsSchedulePlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
@@ -105,21 +105,20 @@ impl Plugin for PhysicsSchedulePlugin {
     }
 }
 
-/// Ends the last part of a step, and parks the threads: later systems may need the cores.
+/// Ends the last part of a step, and parks the threads, because later systems may need the cores.
 fn end_writeback(mut times: ResMut<StepTimes>, threads: Res<Threads>, _: OnThisThread) {
     times.end("Writeback");
     times.note_shared(&threads.pool);
     threads.pool.rest();
 }
 
-/// A parameter that keeps a system of the hosting schedule on the thread that runs the schedule, if that is a
-/// schedule with many threads. Most of these systems do so little that handing them to another thread would
-/// take a hundred times as long.
+/// A parameter that keeps a system of a multi-threaded hosting schedule on the thread that runs the schedule.
+/// Most of these systems do little work: handing them to another thread would take a hundred times as long.
 pub(crate) use bevy_ecs::system::NonSendMarker as OnThisThread;
 
-/// Lets a schedule run its systems one after the other, and makes an ambiguous order an error.
+/// Makes a schedule run its systems one after the other, and makes an ambiguous order an error.
 ///
-/// A step is parallel inside of its systems. A task per system would cost more than it saves.
+/// A step is parallel inside its systems. One task per system would cost more than it saves.
 pub(crate) fn make_deterministic(schedule: &mut Schedule) {
     schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(ScheduleBuildSettings {
         ambiguity_detection: LogLevel::Error,
@@ -129,14 +128,14 @@ pub(crate) fn make_deterministic(schedule: &mut Schedule) {
 
 /// One step of the simulation. Its sets are [`PhysicsStepSystems`].
 ///
-/// Systems run one after the other, and an ambiguous order is an error: use `.before` or `.after` where two
-/// of your systems share data. The order relative to the engine's own systems in the same set may be left
-/// open: shared data is then read either before or after them. [Run by hand](Physics#stepping-by-hand), a
-/// step is as long as the delta of [`Time<Physics>`](Physics), independent of the generic [`Time`].
+/// Systems run one after the other, and an ambiguous order is an error: use `.before` or `.after` if two of
+/// your systems share data. The order relative to the engine's own systems in the same set may be ambiguous:
+/// shared data is then read either before or after them. [Run by hand](Physics#stepping-by-hand), a step is
+/// as long as the delta of [`Time<Physics>`](Physics), independent of the generic [`Time`].
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct PhysicsSchedule;
 
-/// Runs instead of [`PhysicsSchedule`] where the hosting schedule runs and takes no step: while physics is
+/// Runs instead of [`PhysicsSchedule`] if the hosting schedule runs without taking a step: while physics is
 /// paused, or at a relative speed of 0.
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub(crate) struct SkippedStep;
@@ -150,7 +149,7 @@ pub enum PhysicsSystems {
     Prepare,
     /// Advance the clock and, unless it is paused, run [`PhysicsSchedule`].
     StepSimulation,
-    /// Write results to components of the app: positions and rotations to transforms.
+    /// Write results to other components: positions and rotations to transforms.
     Writeback,
     /// After physics.
     Last,
@@ -201,15 +200,16 @@ pub type PhysicsStepSet = PhysicsStepSystems;
 /// The change tick at the end of the last step.
 ///
 /// Newer changes were made by the app, or by the write-back of that step, not by the step itself. A run of
-/// the hosting schedule without a step does not change it: what the app changes while physics is paused is
-/// new for the next step.
+/// the hosting schedule without a step does not change this tick: changes by the app while physics is paused
+/// are new for the next step.
 #[derive(Resource, Reflect, Default)]
 #[reflect(Resource, Default)]
 pub struct LastPhysicsTick(pub Tick);
 
 /// Elapsed [`Time<Physics>`](Physics) at the end of the last step.
 ///
-/// A paused clock that is ahead of it was advanced by hand, and the step for it was not run yet.
+/// If the paused clock is ahead of it, the clock was advanced by hand and the corresponding step is still
+/// due.
 #[derive(Resource, Default)]
 struct SimulatedTime(Duration);
 
@@ -223,7 +223,7 @@ fn record_step(
     simulated.0 = clock.elapsed();
 }
 
-/// Advances [`Time<Physics>`](Physics), and takes one step of that length unless it is zero.
+/// Advances [`Time<Physics>`](Physics), and takes one step of that length unless the length is zero.
 ///
 /// The first run is no exception: if the host's clock has not started, there is no time to simulate.
 fn run_physics_schedule(world: &mut World) {

@@ -9,14 +9,15 @@ use std::sync::OnceLock;
 
 use crate::asked::Asked;
 
-/// Time of each part of the last step, in the order they ran: from `Prepare`, where transforms are read,
-/// through the stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, where they are written.
+/// Time of each part of the last step, in the order in which they ran: from `Prepare`, which reads
+/// transforms, through the stages of [`PhysicsSchedule`](super::PhysicsSchedule), to `Writeback`, which
+/// writes transforms.
 ///
-/// Empty until [`parts`](Self::parts) or [`total`](Self::total) is first called, of the resource or a clone,
-/// and filled by every step from then on: the clocks take a tenth of a small world's step.
+/// Empty until [`parts`](Self::parts) or [`total`](Self::total) is first called on the resource or a clone.
+/// From then on every step fills it. Reading the clocks takes a tenth of a small world's step.
 ///
-/// The time of the app's systems between two parts is included in the later one. `DrainLifecycle`,
-/// `ReadAwake`, `Gather`, `Scatter`, `WriteTransforms` and `MirrorSleep`, besides `Prepare` and `Writeback`,
+/// The time of the app's systems between two parts is included in the later part. `DrainLifecycle`,
+/// `ReadAwake`, `Gather`, `Scatter`, `WriteTransforms` and `MirrorSleep`, and also `Prepare` and `Writeback`,
 /// only copy between components and the engine's tables. The names are for display, and may change.
 ///
 /// ```
@@ -34,13 +35,13 @@ pub struct StepTimes {
     parts: Vec<(&'static str, Duration)>,
     #[reflect(ignore)]
     last: Option<Instant>,
-    /// Where the next part is, if parts run as in the last step.
+    /// The expected index of the next part, if parts run as in the last step.
     #[reflect(ignore)]
     next: usize,
     #[reflect(ignore)]
     asked: Asked,
     counts_shared: bool,
-    /// In the last step, and in all before.
+    /// The shared time of the last step, and of all earlier steps.
     shared: [Duration; 2],
 }
 
@@ -62,12 +63,13 @@ impl StepTimes {
     }
 
     /// Time of the last step in which several threads worked. The rest is the work of one thread, and takes
-    /// as long on any number of cores. Zero unless [measured](Self::count_shared), which costs a little.
+    /// the same time on any number of cores. Zero unless [measured](Self::count_shared), which costs a
+    /// little.
     pub fn shared(&self) -> Duration {
         self.shared[0]
     }
 
-    /// Records for how long jobs were shared with threads.
+    /// Records the time in which jobs were shared with threads.
     pub(crate) fn note_shared(&mut self, pool: &ThreadPool) {
         if self.counts_shared {
             pool.count_shared_time(nanoseconds);
@@ -86,7 +88,7 @@ impl StepTimes {
         (self.last, self.next) = (self.are_read().then(Instant::now), 0);
     }
 
-    /// Ends a part: the time since the last one ended is its time.
+    /// Ends a part. Its time is the time since the end of the previous part.
     pub(crate) fn end(&mut self, part: &'static str) {
         if !self.are_read() {
             return;

@@ -1,5 +1,5 @@
 //! Clocks of a step: [`Time<Physics>`](Physics), advanced once per step, and [`Time<Substeps>`](Substeps),
-//! advanced once per substep. The generic [`Time`] is set to one of them while a schedule runs.
+//! advanced once per substep. The generic [`Time`] is set to one of the clocks while a schedule runs.
 
 use bevy_ecs::world::World;
 use bevy_log::warn_once;
@@ -13,8 +13,8 @@ use crate::math::Scalar;
 
 /// The clock of the simulation, a context of [`Time`].
 ///
-/// `Time<Physics>` advances once per step by the delta of the schedule that physics runs in, times the
-/// [relative speed](PhysicsTime::relative_speed), or not at all while [paused](PhysicsTime::pause). Within
+/// `Time<Physics>` advances once per step by the delta of the hosting schedule, times the [relative
+/// speed](PhysicsTime::relative_speed), or not at all while [paused](PhysicsTime::pause). Within
 /// [`PhysicsSchedule`](super::PhysicsSchedule) the generic `Time` has the same values.
 ///
 /// ```
@@ -32,8 +32,8 @@ use crate::math::Scalar;
 ///
 /// # Stepping by hand
 ///
-/// While the clock is paused, every `advance_by` counts as a request for one step. Either run the
-/// step at once,
+/// While the clock is paused, every `advance_by` counts as a request for one step. Either run the step
+/// immediately,
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -49,8 +49,8 @@ use crate::math::Scalar;
 /// }
 /// ```
 ///
-/// or only advance the clock: the next run of the schedule that hosts physics then takes that step, including
-/// reading and writing transforms.
+/// or only advance the clock: the next run of the hosting schedule then takes that step, including reading
+/// and writing transforms.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -61,7 +61,7 @@ pub struct Physics {
     relative_speed: f64,
 }
 
-/// A stored speed, if it can be [set](PhysicsTime::set_relative_speed).
+/// A stored speed, if it is a valid [relative speed](PhysicsTime::set_relative_speed).
 #[cfg(feature = "serialize")]
 fn deserialize_speed<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let speed: f64 = serde::Deserialize::deserialize(deserializer)?;
@@ -80,7 +80,7 @@ impl Default for Physics {
 
 /// Pausing and speed of [`Time<Physics>`](Physics).
 ///
-/// A relative speed must be finite and not negative. Any other is ignored, with one warning.
+/// A relative speed must be finite and not negative. Other values are ignored, with one warning.
 pub trait PhysicsTime {
     /// Simulated seconds per second of the hosting schedule; 1 by default.
     fn relative_speed(&self) -> f32;
@@ -95,8 +95,8 @@ pub trait PhysicsTime {
     fn with_relative_speed_f64(self, ratio: f64) -> Self;
 
     /// Sets the number of simulated seconds per second of the hosting schedule: 0.5 is slow motion, 0 stops.
-    /// It scales the *length* of each step, not their number, so large values cost accuracy. Negative,
-    /// infinite and NaN ratios are ignored with a warning.
+    /// It scales the *length* of each step, not the number of steps, so large values reduce accuracy.
+    /// Negative, infinite and NaN ratios are ignored with a warning.
     fn set_relative_speed(&mut self, ratio: f32);
 
     /// [`set_relative_speed`](Self::set_relative_speed) in double precision.
@@ -158,11 +158,11 @@ impl PhysicsTime for Time<Physics> {
     }
 }
 
-/// The clock of the substeps, a context of [`Time`]: its delta is that of [`Time<Physics>`](Physics) divided
-/// by the [`SubstepCount`](crate::dynamics::solver::schedule::SubstepCount).
+/// The clock of the substeps, a context of [`Time`]. Its delta is the delta of [`Time<Physics>`](Physics)
+/// divided by the [`SubstepCount`](crate::dynamics::solver::schedule::SubstepCount).
 ///
-/// It advances once per substep. From the start of a step it shows the end of the first substep, after the
-/// step the end of the last.
+/// It advances once per substep. From the start of a step it shows the end of the first substep, and after
+/// the step the end of the last substep.
 ///
 /// Within [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule) the generic `Time` has
 /// the same values.
@@ -184,7 +184,7 @@ impl<T: Default> TimePrecisionAdjusted for Time<T> {
     }
 }
 
-/// By how much a running physics clock advances when its host advances by `host_delta`.
+/// The advance of a running physics clock when its host advances by `host_delta`.
 ///
 /// A result beyond the range of [`Duration`] saturates instead of panicking.
 pub(super) fn scaled_delta(clock: &Time<Physics>, host_delta: Duration) -> Duration {

@@ -12,14 +12,15 @@ use crate::{
     math::{Dir, RotationValue, Scalar, Vector},
 };
 
-/// Number of queries that a thread takes at once. Fewer balance better, more cost less to hand out.
+/// Number of queries that a thread takes at once. A smaller number balances better; a larger one costs less
+/// to distribute.
 const CHUNK: usize = 256;
 
-/// Many queries at once. Results are those of the single queries, for any number of threads, and in the order
-/// of the questions.
+/// Many queries at once. The results equal the results of single queries, for any number of threads, and are
+/// in the order of the questions.
 ///
-/// Answers are written to a slice, so that its memory can be used again. If it is longer than that of the
-/// questions, the rest becomes `None`; if it is shorter, the last questions are not asked.
+/// Answers are written to a slice, so that its memory can be reused. If it is longer than the slice of
+/// questions, the rest becomes `None`; if it is shorter, the last questions are skipped.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -31,7 +32,7 @@ const CHUNK: usize = 256;
 /// }
 /// ```
 impl SpatialQuery<'_, '_> {
-    /// The first hit of each ray, as [`cast_ray`](Self::cast_ray).
+    /// The first hit of each ray, as in [`cast_ray`](Self::cast_ray).
     pub fn cast_rays(
         &self,
         rays: &[(Vector, Dir)],
@@ -46,7 +47,7 @@ impl SpatialQuery<'_, '_> {
         });
     }
 
-    /// The first hit of a shape for each start and direction, as [`cast_shape`](Self::cast_shape).
+    /// The first hit of a shape for each start and direction, as in [`cast_shape`](Self::cast_shape).
     pub fn cast_shapes(
         &self,
         shape: &Collider,
@@ -61,7 +62,7 @@ impl SpatialQuery<'_, '_> {
         });
     }
 
-    /// The nearest collider to each point, as [`project_point`](Self::project_point).
+    /// The nearest collider to each point, as in [`project_point`](Self::project_point).
     pub fn project_points(
         &self,
         points: &[Vector],
@@ -99,7 +100,7 @@ fn answer<Q: Sync, A: Send>(
         for _ in 0..helpers {
             scope.spawn(async move { work() });
         }
-        // The caller may be a thread of the pool, which would be missing otherwise.
+        // The caller may be a thread of the pool, which would then be missing.
         scope.spawn_on_scope(async move { work() });
     });
 }

@@ -1,4 +1,4 @@
-//! Where casters are in the world.
+//! World poses of casters.
 
 use bevy_ecs::{hierarchy::ChildOf, prelude::*, system::SystemParam};
 use bevy_transform::components::{GlobalTransform, Transform};
@@ -10,10 +10,10 @@ use crate::{
     physics_transform::{Position, Rotation},
 };
 
-/// The most ancestors that are looked at. Deeper hierarchies are taken to begin there.
+/// Maximum number of ancestors that are visited. A deeper hierarchy is cut off there.
 const MAX_DEPTH: usize = 256;
 
-/// The frame of a caster in the world. Lengths are not scaled in it.
+/// The frame of a caster in the world. It does not scale lengths.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CasterFrame {
     pub(super) position: Vector,
@@ -25,15 +25,15 @@ impl CasterFrame {
         self.position + self.rotation * point
     }
 
-    /// The direction turned, or unturned where the rotation is no rotation.
+    /// The direction rotated to the world. If the rotation is invalid, the direction is unchanged.
     pub(super) fn direction(&self, direction: Dir) -> Dir {
         let turned = self.rotation * VectorF32::from(direction).adjust_precision();
         Dir::new(turned.f32()).unwrap_or(direction)
     }
 }
 
-/// Poses of casters: `Position` and `Rotation` where an entity has them, else its `Transform` applied to the
-/// pose of its parent.
+/// Poses of casters: `Position` and `Rotation` of an entity if it has them, otherwise its `Transform` applied
+/// to the pose of its parent.
 #[derive(SystemParam)]
 pub(super) struct Frames<'w, 's> {
     poses: Query<'w, 's, (&'static Position, &'static Rotation)>,
@@ -53,7 +53,7 @@ impl Frames<'_, '_> {
             let pose = self.poses.get(at).ok().filter(|(position, _)| **position != Position::PLACEHOLDER);
             if let Some((position, rotation)) = pose {
                 let scale = self.globals.get(at).map_or(Transform::IDENTITY.scale, GlobalTransform::scale);
-                // Only below: the scale of an entity does not move its own origin.
+                // The scale applies only to descendants: it does not move the entity's own origin.
                 let below = Transform { translation: below.translation * scale, ..below };
                 let (offset, turn) = local(&below);
                 return CasterFrame { position: position.0 + *rotation * offset, rotation: *rotation * turn };
@@ -68,7 +68,8 @@ impl Frames<'_, '_> {
         CasterFrame { position, rotation }
     }
 
-    /// The body that an entity belongs to: itself, that of its collider, or the nearest above.
+    /// The body that an entity belongs to: the entity itself, the body of its collider, or the nearest body
+    /// above.
     pub(super) fn body_of(&self, entity: Entity) -> Option<Entity> {
         let mut at = entity;
         for _ in 0..MAX_DEPTH {

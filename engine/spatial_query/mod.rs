@@ -9,11 +9,11 @@
 //!
 //! [`SpatialQueryFilter`] chooses layers and excludes entities.
 //!
-//! Queries see the world as its components are: colliders that were spawned, moved, scaled, disabled or
-//! removed since the last step, also while physics is paused. A
+//! Queries see the components as they are now, including colliders that were spawned, moved, scaled, disabled
+//! or removed since the last step, even while physics is paused. A
 //! [`Position`](crate::physics_transform::Position) is current; a `Transform` that was set by hand is read
-//! before the next step, or by
-//! [`PhysicsTransformHelper`](crate::physics_transform::PhysicsTransformHelper) at once.
+//! before the next step, or by [`PhysicsTransformHelper`](crate::physics_transform::PhysicsTransformHelper)
+//! at once.
 
 #[cfg(feature = "default-collider")]
 mod batch;

@@ -1,4 +1,4 @@
-//! The convex parts of all colliders that a shape comes near, each with its nearest points.
+//! The convex parts of all colliders near a shape, each with its nearest points.
 
 use bevy_ecs::prelude::*;
 use kernel::query::visit_closest;
@@ -17,7 +17,7 @@ use crate::{
 pub(crate) struct NearPart {
     /// The collider.
     pub(crate) entity: Entity,
-    /// In the world: on the collider, and on the shape.
+    /// The nearest points in the world: on the collider, and on the shape.
     pub(crate) points: [Vector; 2],
     /// The unit normal from the collider to the shape.
     pub(crate) normal: Vector,
@@ -26,8 +26,9 @@ pub(crate) struct NearPart {
 }
 
 impl SpatialQuery<'_, '_> {
-    /// All convex parts within `reach` metres of a shape, of the colliders that the predicate is true for: in
-    /// the order in which colliders entered the simulation. There are none at a pose that is not finite.
+    /// All convex parts within `reach` metres of a shape, of the colliders for which the predicate is true.
+    /// They are in the order in which colliders entered the simulation. There are none if the pose is not
+    /// finite.
     pub(crate) fn near_parts(
         &self,
         shape: &Collider,

@@ -18,7 +18,7 @@ pub struct SpatialQueryPlugin {
 }
 
 impl SpatialQueryPlugin {
-    /// Casters are updated in a schedule. The default is [`FixedPostUpdate`].
+    /// Updates casters in a schedule. The default is [`FixedPostUpdate`].
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern() }
     }

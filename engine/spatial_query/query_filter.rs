@@ -1,4 +1,4 @@
-//! Which colliders a query finds.
+//! The filter of spatial queries.
 
 use bevy_ecs::{entity::EntityHashSet, prelude::*};
 use bevy_reflect::prelude::*;
@@ -7,7 +7,8 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::collision::collider::{CollisionLayers, LayerMask};
 
-/// Which colliders a spatial query finds: those in a layer of the mask, without the excluded entities.
+/// Selects the colliders that a spatial query finds: colliders in a layer of the mask, without excluded
+/// entities.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -22,9 +23,9 @@ use crate::collision::collider::{CollisionLayers, LayerMask};
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub struct SpatialQueryFilter {
-    /// The layers of which a collider must be in one. All by default.
+    /// A collider must be in at least one of these layers. All by default.
     pub mask: LayerMask,
-    /// Entities of colliders that are not found. None by default.
+    /// Entities whose colliders are not found. None by default.
     pub excluded_entities: EntityHashSet,
 }
 
@@ -43,24 +44,25 @@ impl SpatialQueryFilter {
         Self { mask: mask.into(), ..Self::DEFAULT }
     }
 
-    /// All colliders but those of the given entities.
+    /// All colliders except the colliders of the given entities.
     pub fn from_excluded_entities(entities: impl IntoIterator<Item = Entity>) -> Self {
         Self::DEFAULT.with_excluded_entities(entities)
     }
 
-    /// The same with other layers.
+    /// The same filter with other layers.
     pub fn with_mask(mut self, masks: impl Into<LayerMask>) -> Self {
         self.mask = masks.into();
         self
     }
 
-    /// The same with other excluded entities.
+    /// The same filter with other excluded entities.
     pub fn with_excluded_entities(mut self, entities: impl IntoIterator<Item = Entity>) -> Self {
         self.excluded_entities = EntityHashSet::from_iter(entities);
         self
     }
 
-    /// Whether a collider with the given layers is found. One whose filters hold no layer is not.
+    /// Whether a collider with the given layers is found. A collider whose filters contain no layer is not
+    /// found.
     pub fn test(&self, entity: Entity, layers: CollisionLayers) -> bool {
         CollisionLayers::new(LayerMask::ALL, self.mask).interacts_with(layers)
             && !self.excluded_entities.contains(&entity)

@@ -1,4 +1,4 @@
-//! Rays that are cast from an entity again and again.
+//! Rays that are cast from an entity in every run of a schedule.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::{
@@ -41,21 +41,21 @@ use crate::math::{AdjustPrecision, Dir, Ray, Scalar, Vector, VectorF32};
 pub struct RayCaster {
     /// Whether the ray is cast. A disabled caster has no hits. True by default.
     pub enabled: bool,
-    /// Where the ray begins, in the entity's frame, in metres.
+    /// The start of the ray, in the entity's frame, in metres.
     pub origin: Vector,
-    /// Its direction, in the entity's frame. Along x by default.
+    /// The direction of the ray, in the entity's frame. Along x by default.
     pub direction: Dir,
-    /// The most hits. If there are more the nearest are kept. No limit by default.
+    /// Maximum number of hits: the nearest ones are kept. No limit by default.
     pub max_hits: u32,
     /// The length of the ray in metres. No limit by default.
     pub max_distance: Scalar,
-    /// Whether a ray that begins inside of a collider hits it at distance 0. If not it hits the boundary from
-    /// within. True by default.
+    /// Whether a ray that starts inside a collider hits it at distance 0. Otherwise the ray hits the boundary
+    /// from within. True by default.
     pub solid: bool,
-    /// Whether the ray passes through the colliders of its entity, and of the body that this belongs to.
-    /// True by default.
+    /// Whether the ray passes through the colliders of its entity, and of the body that the entity belongs
+    /// to. True by default.
     pub ignore_self: bool,
-    /// Which colliders are hit. All by default.
+    /// The filter of the colliders that the ray can hit. All by default.
     pub query_filter: SpatialQueryFilter,
     global_origin: Vector,
     global_direction: Dir,
@@ -95,54 +95,54 @@ impl RayCaster {
         Self::new(ray.origin.adjust_precision(), ray.direction)
     }
 
-    /// The same from another origin, in metres.
+    /// The same ray from another origin, in metres.
     pub fn with_origin(mut self, origin: Vector) -> Self {
         self.origin = origin;
         self
     }
 
-    /// The same in another direction.
+    /// The same ray in another direction.
     pub fn with_direction(mut self, direction: Dir) -> Self {
         self.direction = direction;
         self
     }
 
-    /// The same with another value of [`solid`](Self::solid).
+    /// The same ray with another value of [`solid`](Self::solid).
     pub fn with_solidness(mut self, solid: bool) -> Self {
         self.solid = solid;
         self
     }
 
-    /// The same with another value of [`ignore_self`](Self::ignore_self).
+    /// The same ray with another value of [`ignore_self`](Self::ignore_self).
     pub fn with_ignore_self(mut self, ignore: bool) -> Self {
         self.ignore_self = ignore;
         self
     }
 
-    /// The same with another length, in metres.
+    /// The same ray with another length, in metres.
     pub fn with_max_distance(mut self, max_distance: Scalar) -> Self {
         self.max_distance = max_distance;
         self
     }
 
-    /// The same with at most this number of hits.
+    /// The same ray with at most this number of hits.
     pub fn with_max_hits(mut self, max_hits: u32) -> Self {
         self.max_hits = max_hits;
         self
     }
 
-    /// The same with another filter.
+    /// The same ray with another filter.
     pub fn with_query_filter(mut self, query_filter: SpatialQueryFilter) -> Self {
         self.query_filter = query_filter;
         self
     }
 
-    /// Casts the ray from now on.
+    /// Enables the ray from now on.
     pub fn enable(&mut self) {
         self.enabled = true;
     }
 
-    /// Casts the ray no more. Its hits are cleared.
+    /// Disables the ray. Its hits are cleared.
     pub fn disable(&mut self) {
         self.enabled = false;
     }
@@ -175,8 +175,8 @@ impl RayCaster {
     }
 }
 
-/// The hits of a [`RayCaster`], nearest first; at the same distance in the order in which colliders entered
-/// the simulation.
+/// The hits of a [`RayCaster`], nearest first. Hits at the same distance are in the order in which colliders
+/// entered the simulation.
 #[derive(Component, Clone, Debug, Default, Deref, DerefMut, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -185,7 +185,7 @@ impl RayCaster {
 pub struct RayHits(pub Vec<RayHitData>);
 
 impl RayHits {
-    /// The hits, nearest first. They are already, unless the app changed them.
+    /// The hits, nearest first. They are already in this order, unless the app changed them.
     pub fn iter_sorted(&self) -> std::vec::IntoIter<RayHitData> {
         let mut hits = self.0.clone();
         hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -236,8 +236,7 @@ pub struct RayHitData {
     pub entity: Entity,
     /// The distance along the ray, in metres.
     pub distance: Scalar,
-    /// The outward unit normal of the collider, in the world. Zero if the ray begins inside of a
-    /// solid collider.
+    /// The outward unit normal of the collider, in the world. Zero if the ray starts inside a solid collider.
     pub normal: Vector,
 }
 

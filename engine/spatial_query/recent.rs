@@ -1,9 +1,9 @@
-//! Colliders that differ from the tables: those that the app spawned, changed, moved or removed since
-//! the last step.
+//! Colliders that differ from the tables: the app spawned, changed, moved or removed them since the last
+//! step.
 //!
-//! The tables and trees follow components once per step. Until then a query leaves out the colliders that
-//! changed, and looks at their components instead, through a tree of their own. All systems and observers
-//! share what is known of them: each run adds what changed since the last one (`world.rs`).
+//! The tables and trees follow components once per step. Until then a query skips the changed colliders in
+//! the tables, and searches their components instead, through a separate tree. All systems and observers
+//! share this state: each run adds the changes since the last one (`world.rs`).
 
 use bevy_ecs::{
     entity::{EntityHashMap, EntityIndexSet},
@@ -31,30 +31,30 @@ pub(super) struct RecentCollider {
     pub(super) shape: Shape,
     pub(super) pose: WorldPose,
     pub(super) layers: CollisionLayers,
-    /// Whether it uses its own pose, though it has a body.
+    /// Whether the collider uses its own pose, though it has a body.
     pub(super) is_detached: bool,
 }
 
 impl RecentCollider {
-    /// Its id, or a number above all ids while it has none. Orders hits at the same distance.
+    /// The id of the collider, or a number above all ids if it has none. Orders hits at the same distance.
     pub(super) fn order(&self) -> u32 {
         if self.id == NONE { RECENT | self.entity.index_u32() } else { self.id }
     }
 }
 
-/// An entity that may differ from the tables, as it is now.
+/// The present state of an entity that may differ from the tables.
 pub(super) struct Seen {
     pub(super) entity: Entity,
-    /// Its id in the tables, or [`NONE`].
+    /// The id of the entity in the tables, or [`NONE`].
     pub(super) id: u32,
-    /// Its collider, if it takes part.
+    /// The collider of the entity, if it takes part in queries.
     pub(super) collider: Option<RecentCollider>,
 }
 
 /// All colliders that differ from the tables.
 #[derive(Clone, Default)]
 pub(super) struct Recent {
-    /// Ids that the tables are wrong about.
+    /// Ids of colliders whose data in the tables is outdated.
     pub(super) replaced: BitSet,
     /// A tree over the places of colliders.
     pub(super) trees: Trees,
@@ -73,12 +73,12 @@ impl Recent {
         self.colliders.get(place as usize)?.as_ref().map(|(collider, _)| collider)
     }
 
-    /// Whether an entity's collider is among these.
+    /// Whether an entity's collider is in this set.
     pub(super) fn holds(&self, entity: Entity) -> bool {
         self.places.contains_key(&entity)
     }
 
-    /// Replaces what is known of some entities.
+    /// Replaces the known state of some entities.
     pub(super) fn update(&mut self, all: impl Iterator<Item = Seen>) {
         let tree = &mut self.trees[TreeKind::Standalone];
         let (mut leaves, mut new) = (Vec::new(), Vec::new());

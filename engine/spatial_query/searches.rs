@@ -20,7 +20,7 @@ use kernel::{
     shape::Shape,
 };
 
-/// A search of the colliders as they are, by a filter.
+/// A search of the present colliders, with a filter.
 pub(super) struct Search<'a> {
     world: &'a World<'a, 'a>,
     recent: &'a Recent,
@@ -74,7 +74,7 @@ impl<'a> Search<'a> {
         Scene { tables: &self.world.colliders, recent: self.recent }
     }
 
-    /// The collider of a candidate, if it passes the filter. Only parry's shapes need it.
+    /// The collider component of a candidate, if it passes the filter. Only parry's shapes need it.
     pub(super) fn component(&self, candidate: &Candidate) -> Option<&Collider> {
         self.world.component(candidate.entity)
     }
@@ -118,7 +118,7 @@ impl Walk<Vector> for RaySearch<'_> {
     }
 }
 
-/// Points and normals of a hit of a cast shape: on the collider, then on the shape.
+/// Points and normals of the hit of a cast shape: on the collider, then on the shape.
 #[derive(Clone, Copy)]
 pub(super) struct Touch {
     points: [Vector; 2],

@@ -1,4 +1,4 @@
-//! Shapes that are cast from an entity again and again, and settings of shape casts.
+//! Shapes that are cast from an entity in every run of a schedule, and settings of shape casts.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::{
@@ -16,8 +16,8 @@ use crate::{
     physics_transform::Rotation,
 };
 
-/// Casts a shape from its entity once per run of the schedule: it moves along a line, without turning. The
-/// hits are in [`ShapeHits`].
+/// Casts a shape from its entity once per run of the schedule: the shape moves along a line, without
+/// rotation. The hits are in [`ShapeHits`].
 ///
 /// Origin, rotation and direction are in the frame of the entity, so that the cast moves and turns with it.
 ///
@@ -49,26 +49,26 @@ pub struct ShapeCaster {
     /// The shape.
     #[reflect(ignore)]
     pub shape: Collider,
-    /// Where the shape begins, in the entity's frame, in metres.
+    /// The start of the shape, in the entity's frame, in metres.
     pub origin: Vector,
     /// The rotation of the shape in the entity's frame: an angle in radians in 2D, a quaternion in 3D.
     pub shape_rotation: RotationValue,
-    /// The direction of its way, in the entity's frame. Along x by default.
+    /// The direction of the cast, in the entity's frame. Along x by default.
     pub direction: Dir,
-    /// The most hits. If there are more the nearest are kept. 1 by default.
+    /// Maximum number of hits: the nearest ones are kept. 1 by default.
     pub max_hits: u32,
-    /// The length of the way in metres. No limit by default.
+    /// The length of the cast in metres. No limit by default.
     pub max_distance: Scalar,
-    /// The distance at which the shape meets a collider, in metres. 0 by default.
+    /// The distance between shape and collider at which they count as hit, in metres. 0 by default.
     pub target_distance: Scalar,
     /// See [`ShapeCastConfig::compute_contact_on_penetration`]. True by default.
     pub compute_contact_on_penetration: bool,
     /// See [`ShapeCastConfig::ignore_origin_penetration`]. False by default.
     pub ignore_origin_penetration: bool,
-    /// Whether the shape passes through the colliders of its entity, and of the body that this belongs to.
-    /// True by default.
+    /// Whether the shape passes through the colliders of its entity, and of the body that the entity belongs
+    /// to. True by default.
     pub ignore_self: bool,
-    /// Which colliders are hit. All by default.
+    /// The filter of the colliders that the shape can hit. All by default.
     pub query_filter: SpatialQueryFilter,
     global_origin: Vector,
     global_shape_rotation: RotationValue,
@@ -109,67 +109,67 @@ impl ShapeCaster {
         }
     }
 
-    /// The same from another origin, in metres.
+    /// The same cast from another origin, in metres.
     pub fn with_origin(mut self, origin: Vector) -> Self {
         self.origin = origin;
         self
     }
 
-    /// The same in another direction.
+    /// The same cast in another direction.
     pub fn with_direction(mut self, direction: Dir) -> Self {
         self.direction = direction;
         self
     }
 
-    /// The same with another value of [`target_distance`](Self::target_distance), in metres.
+    /// The same cast with another value of [`target_distance`](Self::target_distance), in metres.
     pub fn with_target_distance(mut self, target_distance: Scalar) -> Self {
         self.target_distance = target_distance;
         self
     }
 
-    /// The same with another value of
+    /// The same cast with another value of
     /// [`compute_contact_on_penetration`](Self::compute_contact_on_penetration).
     pub fn with_compute_contact_on_penetration(mut self, compute_contact: bool) -> Self {
         self.compute_contact_on_penetration = compute_contact;
         self
     }
 
-    /// The same with another value of [`ignore_origin_penetration`](Self::ignore_origin_penetration).
+    /// The same cast with another value of [`ignore_origin_penetration`](Self::ignore_origin_penetration).
     pub fn with_ignore_origin_penetration(mut self, ignore: bool) -> Self {
         self.ignore_origin_penetration = ignore;
         self
     }
 
-    /// The same with another value of [`ignore_self`](Self::ignore_self).
+    /// The same cast with another value of [`ignore_self`](Self::ignore_self).
     pub fn with_ignore_self(mut self, ignore: bool) -> Self {
         self.ignore_self = ignore;
         self
     }
 
-    /// The same with another length of the way, in metres.
+    /// The same cast with another length, in metres.
     pub fn with_max_distance(mut self, max_distance: Scalar) -> Self {
         self.max_distance = max_distance;
         self
     }
 
-    /// The same with at most this number of hits.
+    /// The same cast with at most this number of hits.
     pub fn with_max_hits(mut self, max_hits: u32) -> Self {
         self.max_hits = max_hits;
         self
     }
 
-    /// The same with another filter.
+    /// The same cast with another filter.
     pub fn with_query_filter(mut self, query_filter: SpatialQueryFilter) -> Self {
         self.query_filter = query_filter;
         self
     }
 
-    /// Casts the shape from now on.
+    /// Enables the cast from now on.
     pub fn enable(&mut self) {
         self.enabled = true;
     }
 
-    /// Casts the shape no more. Its hits are cleared.
+    /// Disables the cast. Its hits are cleared.
     pub fn disable(&mut self) {
         self.enabled = false;
     }
@@ -214,15 +214,15 @@ impl ShapeCaster {
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub struct ShapeCastConfig {
-    /// The length of the way in metres. No limit by default.
+    /// The length of the cast in metres. No limit by default.
     pub max_distance: Scalar,
-    /// The distance at which the shape meets a collider, in metres. 0 by default.
+    /// The distance between shape and collider at which they count as hit, in metres. 0 by default.
     pub target_distance: Scalar,
-    /// Whether points and normals are computed where the shape overlaps a collider from the start: those of
-    /// the least depth. True by default. If not they are unspecified, which is faster.
+    /// Whether to compute points and normals, of least depth, if the shape overlaps a collider at the start.
+    /// True by default. Otherwise they are unspecified, which is faster.
     pub compute_contact_on_penetration: bool,
-    /// Whether colliders that the shape overlaps from the start are passed by, unless it moves deeper into
-    /// them. False by default: they are hit at distance 0.
+    /// Whether to ignore colliders that the shape overlaps at the start, unless it moves deeper into them.
+    /// False by default: such colliders are hit at distance 0.
     pub ignore_origin_penetration: bool,
 }
 
@@ -241,31 +241,31 @@ impl ShapeCastConfig {
         ignore_origin_penetration: false,
     };
 
-    /// The defaults with a length of the way, in metres.
+    /// The defaults with another length of the cast, in metres.
     pub const fn from_max_distance(max_distance: Scalar) -> Self {
         Self { max_distance, ..Self::DEFAULT }
     }
 
-    /// The defaults with a distance at which the shape meets colliders, in metres.
+    /// The defaults with another target distance, in metres.
     pub const fn from_target_distance(target_distance: Scalar) -> Self {
         Self { target_distance, ..Self::DEFAULT }
     }
 
-    /// The same with another length of the way, in metres.
+    /// The same settings with another length of the cast, in metres.
     pub const fn with_max_distance(mut self, max_distance: Scalar) -> Self {
         self.max_distance = max_distance;
         self
     }
 
-    /// The same with another distance at which the shape meets colliders, in metres.
+    /// The same settings with another target distance, in metres.
     pub const fn with_target_distance(mut self, target_distance: Scalar) -> Self {
         self.target_distance = target_distance;
         self
     }
 }
 
-/// The hits of a [`ShapeCaster`], nearest first; at the same distance in the order in which colliders entered
-/// the simulation.
+/// The hits of a [`ShapeCaster`], nearest first. Hits at the same distance are in the order in which
+/// colliders entered the simulation.
 #[derive(Component, Clone, Debug, Default, Deref, DerefMut, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -274,7 +274,7 @@ impl ShapeCastConfig {
 pub struct ShapeHits(pub Vec<ShapeHitData>);
 
 impl ShapeHits {
-    /// The hits, nearest first. They are already, unless the app changed them.
+    /// The hits, nearest first. They are already in this order, unless the app changed them.
     pub fn iter_sorted(&self) -> std::vec::IntoIter<ShapeHitData> {
         let mut hits = self.0.clone();
         hits.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -315,7 +315,7 @@ impl MapEntities for ShapeHits {
     }
 }
 
-/// The hit of a shape.
+/// The hit of a cast shape.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -325,21 +325,21 @@ pub struct ShapeHitData {
     pub entity: Entity,
     /// How far the shape moved, in metres.
     pub distance: Scalar,
-    /// The point of the collider where they meet, in the world, in metres.
+    /// The point on the collider at the hit, in the world, in metres.
     pub point1: Vector,
-    /// The point of the shape that was cast, in the world, in metres, when they meet.
+    /// The point on the cast shape at the hit, in the world, in metres.
     pub point2: Vector,
     /// The outward unit normal of the collider, in the world.
     pub normal1: Vector,
-    /// The outward unit normal of the shape that was cast, in the world.
+    /// The outward unit normal of the cast shape, in the world.
     pub normal2: Vector,
 }
 
 impl ShapeHitData {
-    /// The point where the shape stops: its origin when they meet, in the world, in metres. Takes the origin
-    /// and direction that the shape was cast with.
+    /// The position of the shape's origin at the hit, in the world, in metres. Takes the origin and direction
+    /// that the shape was cast with.
     ///
-    /// [`point1`](Self::point1) and [`point2`](Self::point2) are where the surfaces meet.
+    /// The surfaces meet at [`point1`](Self::point1) and [`point2`](Self::point2).
     pub fn point(&self, origin: Vector, direction: Dir) -> Vector {
         origin + VectorF32::from(direction).adjust_precision() * self.distance
     }

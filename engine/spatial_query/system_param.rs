@@ -23,15 +23,15 @@ use crate::{
     physics_transform::{Position, Rotation, world_pose},
 };
 
-/// Rays, shape casts, nearest points and overlaps of all colliders, as a system parameter.
+/// A system parameter for ray casts, shape casts, nearest points and overlaps with all colliders.
 ///
-/// Colliders are seen as their components are now; see [`spatial_query`](crate::spatial_query). Results are
-/// the same on every machine and for any number of threads: hits are nearest first, at the same distance in
-/// the order in which colliders entered the simulation. Sensors are found, disabled colliders are not.
+/// Queries see the present components of colliders; see [`spatial_query`](crate::spatial_query). Results are
+/// the same on every machine and for any number of threads. Hits are nearest first, and at the same distance
+/// in the order in which colliders entered the simulation. Sensors are found, disabled colliders are not.
 ///
-/// A query reads only, so that many threads can share the parameter. A ray or cast whose origin is not
-/// finite, whose direction has no length, or whose distance is negative or NaN hits nothing. Lengths
-/// are in metres.
+/// A query is read-only, so that many threads can share the parameter. A ray or cast whose origin is not
+/// finite, whose direction has no length, or whose distance is negative or NaN hits nothing. Lengths are in
+/// metres.
 ///
 /// ```
 /// # use avian::{math::*, prelude::*};
@@ -58,13 +58,13 @@ pub struct SpatialQuery<'w, 's> {
 pub struct PointProjection {
     /// The collider.
     pub entity: Entity,
-    /// Its nearest point, in the world, in metres.
+    /// The nearest point of the collider, in the world, in metres.
     pub point: Vector,
-    /// Whether the given point is inside of the collider.
+    /// Whether the given point is inside the collider.
     pub is_inside: bool,
 }
 
-/// Searches for the first hits of the colliders as they are in one run of a system.
+/// First-hit searches of the present colliders in one run of a system.
 pub(super) struct FirstHits<'a> {
     queries: &'a SpatialQuery<'a, 'a>,
     recent: Arc<Recent>,
@@ -122,8 +122,8 @@ static EVERYTHING: &SpatialQueryFilter = &SpatialQueryFilter::DEFAULT;
 impl SpatialQuery<'_, '_> {
     /// The first collider that a ray hits.
     ///
-    /// A ray that begins inside of a collider hits it at distance 0 with a zero normal if `solid`, else its
-    /// boundary from within.
+    /// If `solid`, a ray that starts inside a collider hits it at distance 0 with a zero normal. Otherwise it
+    /// hits the boundary from within.
     pub fn cast_ray(
         &self,
         origin: Vector,
@@ -135,7 +135,7 @@ impl SpatialQuery<'_, '_> {
         self.cast_ray_predicate(origin, direction, max_distance, solid, filter, EVERY)
     }
 
-    /// The first collider that a ray hits, of those that the predicate is true for.
+    /// The first collider that a ray hits, among the colliders for which the predicate is true.
     pub fn cast_ray_predicate(
         &self,
         origin: Vector,
@@ -180,9 +180,10 @@ impl SpatialQuery<'_, '_> {
         _ = hits.into_iter().all(|hit| callback(hit.into()));
     }
 
-    /// The first collider that a shape meets, which moves from `origin` along `direction` without turning.
+    /// The first collider that a shape hits. The shape moves from `origin` along `direction` without
+    /// rotation.
     ///
-    /// A shape that touches a collider from the start hits it at distance 0; see [`ShapeCastConfig`].
+    /// A shape that touches a collider at the start hits it at distance 0; see [`ShapeCastConfig`].
     pub fn cast_shape(
         &self,
         shape: &Collider,
@@ -195,7 +196,7 @@ impl SpatialQuery<'_, '_> {
         self.cast_shape_predicate(shape, origin, shape_rotation, direction, config, filter, EVERY)
     }
 
-    /// The first collider that a shape meets, of those that the predicate is true for.
+    /// The first collider that a shape hits, among the colliders for which the predicate is true.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     pub fn cast_shape_predicate(
         &self,
@@ -211,7 +212,7 @@ impl SpatialQuery<'_, '_> {
         self.first_hits().of_shape(start, direction, config, filter, predicate)
     }
 
-    /// All colliders that a shape meets on its way, nearest first, at most `max_hits`.
+    /// All colliders that a cast shape hits, nearest first, at most `max_hits`.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     pub fn shape_hits(
         &self,
@@ -227,8 +228,7 @@ impl SpatialQuery<'_, '_> {
         self.shape_hits_predicate(start, direction, max_hits, config, filter, EVERY)
     }
 
-    /// Calls `callback` with all colliders that a shape meets on its way, nearest first, until it
-    /// returns `false`.
+    /// Calls `callback` with all colliders that a cast shape hits, nearest first, until it returns `false`.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     pub fn shape_hits_callback(
         &self,
@@ -244,9 +244,10 @@ impl SpatialQuery<'_, '_> {
         _ = hits.into_iter().all(&mut callback);
     }
 
-    /// The collider that is nearest to a point, and its nearest point.
+    /// The collider nearest to a point, and the nearest point of that collider.
     ///
-    /// A point inside of a collider is its own projection if `solid`, else it is projected onto the boundary.
+    /// If `solid`, a point inside a collider is its own projection. Otherwise it is projected onto the
+    /// boundary.
     pub fn project_point(
         &self,
         point: Vector,
@@ -256,7 +257,7 @@ impl SpatialQuery<'_, '_> {
         self.project_point_predicate(point, solid, filter, EVERY)
     }
 
-    /// The nearest collider to a point, of those that the predicate is true for.
+    /// The collider nearest to a point, among the colliders for which the predicate is true.
     pub fn project_point_predicate(
         &self,
         point: Vector,
@@ -267,7 +268,7 @@ impl SpatialQuery<'_, '_> {
         self.first_hits().of_point(point, solid, filter, predicate)
     }
 
-    /// All colliders that contain a point, in the order in which they entered the simulation.
+    /// All colliders that contain a point, in the order in which colliders entered the simulation.
     pub fn point_intersections(&self, point: Vector, filter: &SpatialQueryFilter) -> Vec<Entity> {
         let recent = self.world.recent();
         let search = self.search(&recent, filter);
@@ -297,7 +298,7 @@ impl SpatialQuery<'_, '_> {
         _ = self.point_intersections(point, filter).into_iter().all(&mut callback);
     }
 
-    /// All colliders whose boxes touch a box, in the order in which they entered the simulation.
+    /// All colliders whose boxes touch a box, in the order in which colliders entered the simulation.
     pub fn aabb_intersections_with_aabb(&self, aabb: ColliderAabb) -> Vec<Entity> {
         let recent = self.world.recent();
         let search = self.search(&recent, EVERYTHING);
@@ -314,7 +315,7 @@ impl SpatialQuery<'_, '_> {
         _ = self.aabb_intersections_with_aabb(aabb).into_iter().all(&mut callback);
     }
 
-    /// All colliders that touch or overlap a shape, in the order in which they entered the simulation.
+    /// All colliders that touch or overlap a shape, in the order in which colliders entered the simulation.
     pub fn shape_intersections(
         &self,
         shape: &Collider,
@@ -356,7 +357,7 @@ impl SpatialQuery<'_, '_> {
         _ = found.into_iter().all(&mut callback);
     }
 
-    /// As [`ray_hits`](Self::ray_hits), of the colliders that the predicate is true for.
+    /// As [`ray_hits`](Self::ray_hits), for the colliders for which the predicate is true.
     #[expect(clippy::too_many_arguments, reason = "as the public functions")]
     pub(super) fn ray_hits_predicate(
         &self,
@@ -374,7 +375,7 @@ impl SpatialQuery<'_, '_> {
         hits.into_iter().map(RayHitData::from).collect()
     }
 
-    /// As [`shape_hits`](Self::shape_hits), of the colliders that the predicate is true for.
+    /// As [`shape_hits`](Self::shape_hits), for the colliders for which the predicate is true.
     pub(super) fn shape_hits_predicate(
         &self,
         start: (&Collider, (Position, Rotation)),
@@ -400,7 +401,7 @@ impl SpatialQuery<'_, '_> {
         self.world.body_of(collider)
     }
 
-    /// What changed since the last step.
+    /// The colliders that changed since the last step.
     pub(super) fn recent(&self) -> Arc<Recent> {
         self.world.recent()
     }

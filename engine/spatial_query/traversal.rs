@@ -1,4 +1,4 @@
-//! Searches of all colliders: those of the tables, and those that changed since the last step.
+//! Searches of all colliders: colliders in the tables, and colliders that changed since the last step.
 
 use bevy_ecs::prelude::*;
 use kernel::{
@@ -15,11 +15,11 @@ use crate::{
     physics_transform::{Position, Rotation, pose_from_kernel},
 };
 
-/// A collider that a search comes near.
+/// A collider near the path of a search.
 #[derive(Clone, Copy)]
 pub(super) struct Candidate<'a> {
     pub(super) entity: Entity,
-    /// Its id, or a number above all ids while it has none. Orders hits at the same distance.
+    /// The id of the collider, or a number above all ids if it has none. Orders hits at the same distance.
     pub(super) order: u32,
     pub(super) shape: &'a Shape,
     pub(super) pose: WorldPose,
@@ -27,7 +27,7 @@ pub(super) struct Candidate<'a> {
 }
 
 impl Candidate<'_> {
-    /// The pose as components have it.
+    /// The pose in the types of the components.
     pub(super) fn components(&self) -> (Position, Rotation) {
         pose_from_kernel(self.pose)
     }
@@ -58,7 +58,7 @@ impl<T: Copy> Hit for Found<T> {
     }
 }
 
-/// All colliders as they are now.
+/// All present colliders.
 pub(super) struct Scene<'a> {
     pub(super) tables: &'a Colliders,
     pub(super) recent: &'a Recent,
@@ -89,7 +89,7 @@ impl Scene<'_> {
         })
     }
 
-    /// Visits both trees by one walk. `visit` returns the new limit.
+    /// Visits both trees in one walk. `visit` returns the new limit.
     fn both(
         &self,
         limit: Scalar,
@@ -112,12 +112,12 @@ impl Scene<'_> {
         });
     }
 
-    /// The colliders that a ray comes near.
+    /// The colliders near a ray.
     pub(super) fn along_ray(&self, ray: &Ray, visit: impl FnMut(&Candidate, Scalar) -> Scalar) {
         self.both(ray.max_distance(), |trees, visit| ray.visit(trees, visit), visit);
     }
 
-    /// The colliders that a cast shape comes near.
+    /// The colliders near a cast shape.
     pub(super) fn along_cast(&self, cast: &ShapeCast, visit: impl FnMut(&Candidate, Scalar) -> Scalar) {
         self.both(cast.max_distance(), |trees, visit| cast.visit(trees, visit), visit);
     }
@@ -148,9 +148,9 @@ impl Scene<'_> {
     }
 }
 
-/// A way to visit candidates, with a test of each within a limit.
+/// Visits candidates, and tests each within a limit.
 pub(super) trait Walk<T> {
-    /// Visits candidates. `visit` gets a candidate and the present limit, and returns the new one.
+    /// Visits candidates. `visit` gets a candidate and the present limit, and returns the new limit.
     fn walk(&self, visit: &mut dyn FnMut(&Candidate, Scalar) -> Scalar);
     /// The hit of a candidate within a limit.
     fn hit(&self, candidate: &Candidate, limit: Scalar) -> Option<Found<T>>;

@@ -23,7 +23,7 @@ pub(super) fn update_ray_casters(
             }
             continue;
         }
-        // Only what the caster computes changes: no change of the app's.
+        // Only computed fields change, so this is no change by the app.
         caster.bypass_change_detection().place(&frames.of(entity));
         let own = Own::of(entity, caster.ignore_self, &frames);
         hits.0 = queries.ray_hits_predicate(

@@ -1,9 +1,9 @@
-//! The tables and the components that they follow, as a system parameter, and what changed since
-//! the last step.
+//! A system parameter with the tables and the components that they follow, and the changes since the last
+//! step.
 //!
-//! What changed is known from the life-cycle queue and its log, and by a scan of change ticks. All systems
-//! and observers share the result. The first query of a run reads only colliders that changed since the last
-//! run that queried. Without queries nothing is read.
+//! Changes are known from the life-cycle queue and its log, and by a scan of change ticks. All systems and
+//! observers share the result. The first query of a run reads only colliders that changed since the last run
+//! with a query. Without queries nothing is read.
 
 use bevy_ecs::{change_detection::Tick, prelude::*, system::SystemChangeTick, system::SystemParam};
 use kernel::{math::Pose, table::NONE};
@@ -28,11 +28,11 @@ use crate::{
     scan::{IN_TABLES, Since},
 };
 
-/// What the runs of systems know so far.
+/// The changes that the runs of systems know so far.
 #[derive(Default)]
 struct Known {
     recent: Arc<Recent>,
-    /// How far it follows the world. `None` before the first query.
+    /// The moment up to which changes are known. `None` before the first query.
     progress: Option<Progress>,
     /// The number of entities that were read.
     reads: usize,
@@ -42,28 +42,28 @@ struct Known {
 #[derive(Clone, Copy)]
 struct Progress {
     base: Base,
-    /// Tick of the run that looked last.
+    /// The tick of the last run that searched for changes.
     tick: Tick,
-    /// The numbers of entries of the queue's lists then.
+    /// The lengths of the queue's lists at that time.
     notes: usize,
     lost_bodies: usize,
     lost_colliders: usize,
 }
 
-/// The state of the tables, of which recent colliders are the differences.
+/// The state of the tables from which recent colliders differ.
 #[derive(Clone, Copy, PartialEq)]
 struct Base {
     drained: Tick,
     written: Tick,
     log: u64,
-    /// When the tables became resources: they may be replaced by others.
+    /// The ticks at which the tables became resources: they may be replaced by others.
     added: [Tick; 3],
     is_within_step: bool,
 }
 
 impl Known {
-    /// Whether a run of this tick has nothing to add: it holds what it reads, so nothing is written
-    /// while it goes on.
+    /// Whether a run of this tick has no changes to add. The run holds its data, so no data is written while
+    /// it runs.
     fn is_of(&self, now: Tick) -> bool {
         self.progress.is_some_and(|last| now.get().wrapping_sub(last.tick.get()) as i32 <= 0)
     }
@@ -73,7 +73,7 @@ impl Known {
 #[derive(Resource, Clone, Default)]
 struct SharedKnown(Arc<RwLock<Known>>);
 
-/// A handle to what all systems of a world know.
+/// A handle to the changes that all systems of a world know.
 pub(super) struct Shared(Arc<RwLock<Known>>);
 
 impl FromWorld for Shared {
@@ -119,7 +119,7 @@ pub(super) struct World<'w, 's> {
 }
 
 impl World<'_, '_> {
-    /// What changed since the last step, brought up to date by the first query of a run of a system.
+    /// The changes since the last step, brought up to date by the first query of a run of a system.
     pub(super) fn recent(&self) -> Arc<Recent> {
         let now = self.tick.this_run();
         let shared = &self.known.0;
@@ -130,7 +130,7 @@ impl World<'_, '_> {
             }
         }
         let mut known = shared.write().unwrap_or_else(PoisonError::into_inner);
-        // Another thread may have been first.
+        // Another thread may have been faster.
         if !known.is_of(now) {
             self.follow(&mut known, now);
         }
@@ -147,7 +147,7 @@ impl World<'_, '_> {
         self.states.get(collider).ok()?.1.map(|of| of.body)
     }
 
-    /// Adds what changed since the last run.
+    /// Adds the changes since the last run.
     fn follow(&self, known: &mut Known, now: Tick) {
         let base = Base {
             drained: self.queue.drained,
@@ -167,7 +167,7 @@ impl World<'_, '_> {
         let LifecycleQueue { lost_bodies, lost_colliders, log, .. } = &*self.queue;
         let new_lost = progress.map_or(0, |last| last.lost_colliders);
         if !changed.is_empty() || new_lost < lost_colliders.len() {
-            // Copied only while a query of another run is going on.
+            // Copied only while a query of another run is in progress.
             let recent = Arc::make_mut(&mut known.recent);
             lost_colliders[new_lost..].iter().for_each(|id| _ = recent.replaced.insert(*id));
             known.reads += changed.len();
@@ -190,7 +190,7 @@ impl World<'_, '_> {
         Seen { entity, id, collider: self.read(entity, id) }
     }
 
-    /// A collider as its components are, if it takes part.
+    /// A collider from its present components, if it takes part in queries.
     fn read(&self, entity: Entity, id: u32) -> Option<RecentCollider> {
         let (collider, of, transform, own, layers, disabled) = self.states.get(entity).ok()?;
         if disabled {
@@ -217,8 +217,8 @@ impl World<'_, '_> {
         })
     }
 
-    /// Entities of colliders that may differ from what was known after a moment; from the tables if there is
-    /// none. Some may be named twice.
+    /// Entities of colliders that may have changed after a moment; without a moment, that may differ from the
+    /// tables. Some entities may be listed twice.
     fn changed(&self, after: Option<&Progress>, recent: &Recent) -> Vec<Entity> {
         let LifecycleQueue { bodies, colliders, lost_bodies, log, leaving, refused, detached, .. } =
             &*self.queue;
@@ -240,7 +240,7 @@ impl World<'_, '_> {
         for &id in &lost_bodies[after.map_or(0, |last| last.lost_bodies)..] {
             self.add_colliders_of_id(id, &mut found);
         }
-        // Changes of the tick of that run may have been made after it looked.
+        // Changes with the tick of that run may have been made after its search.
         let since = |step: Tick| {
             let last = after.map_or(step, |last| Tick::new(last.tick.get().wrapping_sub(1)));
             Since::new(last, self.tick)
@@ -267,7 +267,7 @@ impl World<'_, '_> {
         found
     }
 
-    /// Adds the colliders of bodies whose pose is not that of the last step, or was not before.
+    /// Adds the colliders of bodies whose pose differs from the last step, or differed before.
     fn add_moved(&self, written: Since, recent: &Recent, found: &mut Vec<Entity>) {
         let mut moved = Vec::new();
         for (entities, ids, position, rotation) in self.moved.contiguous_iter().expect(IN_TABLES) {
@@ -349,7 +349,7 @@ mod tests {
     #[derive(Resource, Default)]
     struct Hits(usize);
 
-    /// Each observer sees what was spawned before, and itself.
+    /// Each observer sees all earlier colliders, and its own.
     fn count_hits(_: On<Add, Collider>, queries: SpatialQuery, mut hits: ResMut<Hits>) {
         hits.0 += all_along_x(queries).len();
     }
@@ -372,7 +372,7 @@ mod tests {
             let old = if is_stepped { all } else { 0 };
             assert_eq!(app.world().resource::<Hits>().0, all * (all + 1) / 2 + old);
             assert!(reads(&app) <= 4 * all, "{} reads of {all} colliders", reads(&app));
-            // Without a change nothing is read, however often a system asks.
+            // Without a change no collider is read, however often a system queries.
             let before = reads(&app);
             for _ in 0..10 {
                 let hits = app.world_mut().run_system_cached(all_along_x).expect("it runs");
@@ -410,7 +410,7 @@ mod tests {
         }
     }
 
-    /// What is followed is what a search from the tables finds.
+    /// The followed changes equal the result of a search from the tables.
     #[test]
     fn what_is_followed_is_what_is_there() {
         let mut seed = 7_u32;

@@ -1,48 +1,47 @@
-//! What one worker of the narrow phase computes with, and what it leaves for the table.
+//! Buffers and results of one worker of the narrow phase.
 
 use super::record::{LostImpulse, Manifold, Parallel, Sliding};
 use super::recycle::RecycleBatch;
 use crate::manifold::{CompositeBuffers, LocalManifold};
 use crate::math::Vector;
 
-/// Buffers of one worker, kept between steps. They are written with every contact, so each worker's are in
-/// cache lines of their own.
+/// Buffers of one worker, kept between steps. Every contact writes them, so each worker has its own cache
+/// lines.
 #[derive(Clone, Debug, Default)]
 #[repr(align(128))]
 pub struct WorkerBuffers {
-    /// The manifolds of the contact at hand, in A's frame.
+    /// Manifolds of the current contact, in A's frame.
     pub(super) local: Vec<LocalManifold>,
     pub(super) composite: CompositeBuffers,
     /// Contacts that may be recycled.
     pub(super) batch: RecycleBatch,
-    /// The manifolds after the first of the contact that was updated last.
+    /// Manifolds after the first of the last updated contact.
     pub extra: Vec<Manifold>,
     /// Contacts that began or ended to touch, or whose boxes came apart.
     pub(super) changed: Vec<u32>,
-    /// Contacts whose manifolds after the first are to be stored, and how many these are.
+    /// Contacts whose manifolds after the first are to be stored, with their count.
     pub(super) stored: Vec<(u32, usize)>,
-    /// The manifolds of `stored`, one contact's after the other's.
+    /// The manifolds of `stored`, in the same order.
     pub(super) pool: Vec<Manifold>,
-    /// Colliders that slide, by each of their contacts with points, and whether its manifolds have to be
-    /// compared in any case.
+    /// Sliding colliders, one entry per contact with points, and whether this contact alone requires a
+    /// comparison.
     pub(super) sliding: Vec<(u32, bool)>,
-    /// The manifolds of the sliding collider at hand.
+    /// Manifolds of the current sliding collider.
     pub(super) slides: Vec<Sliding>,
-    /// Those that are parallel.
+    /// Groups of parallel manifolds in `slides`.
     pub(super) parallel: Vec<Parallel>,
-    /// Contacts, and the numbers of those of their manifolds, whose
-    /// [`is_internal`](Manifold::is_internal) changes.
+    /// (contact, manifold) pairs whose [`is_internal`](Manifold::is_internal) changes.
     pub(super) internal: Vec<(u32, u32)>,
-    /// Manifolds that get other normals, from the ground to the collider.
+    /// (contact, manifold) pairs with their new normals, from the ground to the collider.
     pub(super) turned: Vec<(u32, u32, Vector)>,
-    /// Points under load that sliding colliders lost.
+    /// Loaded points that sliding colliders lost.
     pub(super) lost: Vec<LostImpulse>,
     /// Whether any contact overlaps deeply.
     pub(super) any_deep: bool,
 }
 
 impl WorkerBuffers {
-    /// Empties what the last update left for the table.
+    /// Clears the results of the last update.
     pub(super) fn clear(&mut self) {
         self.changed.clear();
         self.stored.clear();

@@ -1,10 +1,10 @@
-//! What follows from an update of a contact: its bits of deep overlap and platform, and how long it needs no
-//! other update.
+//! State that follows from a contact's update: its bits of deep overlap and platform, and the travel up to
+//! which it needs no further update.
 //!
-//! An update tells how far the surfaces may move against each other until the manifold is to be computed
-//! anew. Half of that way is what the bodies may travel until the next update. Each body adds up a bound of
-//! its surface's way. The solver stores the separations at its end, as long as they are those of the next
-//! step's start.
+//! An update bounds how far the surfaces may move against each other before the manifold must be recomputed.
+//! The bodies may travel half of this distance until the next update. Each body accumulates an upper bound of
+//! its surface's travel. At its end the solver stores the separations if they are valid for the start of the
+//! next step.
 
 use super::input::{Sides, smaller};
 use super::record::{Contact, ContactFlags};
@@ -14,7 +14,7 @@ use crate::table::{BodyPose, TravelScale};
 use crate::tuning::contact::{CALM_SHARE, DEEP};
 use crate::tuning::manifold::SAME;
 
-/// What has to be looked at in each step.
+/// A contact with any of these bits is updated in each step.
 const LOOKED_AT: ContactFlags = ContactFlags::DEEP
     .union(ContactFlags::COMPOSITE)
     .union(ContactFlags::SENSOR)
@@ -29,20 +29,20 @@ impl Contact {
         self.flags.has(ContactFlags::FROZEN) && !self.flags.any(LOOKED_AT)
     }
 
-    /// When the manifold is computed anew: the next update may not leave it as it is.
+    /// Called when the manifold is recomputed: the next update may not skip the contact.
     #[inline(always)]
     pub(super) fn excite(&mut self, poses: [&BodyPose; 2]) {
         self.calm_until = travel(poses);
         self.flags.set(ContactFlags::CALM, false);
     }
 
-    /// After an update. Until the manifold is to be computed anew, surfaces may move by `allowed` metres, of
-    /// which they have `moved`.
+    /// Called after an update. The surfaces may move `allowed` metres before the manifold must be recomputed,
+    /// and have moved `moved` metres.
     #[inline(always)]
     pub(super) fn calm_down(&mut self, poses: [&BodyPose; 2], scale: TravelScale, allowed: f32, moved: f32) {
         let way = allowed * CALM_SHARE - moved;
         self.calm_until = travel(poses).wrapping_add(scale.travelled(way));
-        // Separations are followed by the solver, if there are any.
+        // A contact with points becomes calm when the solver stores its separations.
         let is_followed = self.manifold.count == 0 && self.may_be_calm();
         self.flags.set(ContactFlags::CALM, is_followed);
     }
@@ -55,7 +55,8 @@ fn travel([a, b]: [&BodyPose; 2]) -> u32 {
 }
 
 impl Sides<'_> {
-    /// Whether a contact needs no update. Its separations have to be stored again until the next time.
+    /// Whether a contact needs no update. A touching contact is calm again only after the solver stores its
+    /// separations.
     #[inline(always)]
     pub(super) fn is_calm(&self, contact: &mut Contact) -> bool {
         let &Self { input, poses, .. } = self;
@@ -81,9 +82,8 @@ impl Sides<'_> {
         input.sliding_side(contact).is_none()
     }
 
-    /// Sets the bits that follow from a recomputed manifold: that of deep overlap, and that the embedder has
-    /// changed nothing. Only contacts whose bodies were `placed` where they are can become deep. What pushes
-    /// nothing is never deep.
+    /// Updates the bits of a recomputed contact: deep overlap, and no change by the embedder. Only a contact
+    /// whose bodies were `placed` at their poses can become deep. An inert contact is never deep.
     #[inline(always)]
     pub(super) fn after_recomputing(&self, contact: &mut Contact, placed: bool) {
         let deep = match (contact.flags.has(ContactFlags::DEEP), placed && !contact.is_inert()) {
@@ -95,7 +95,7 @@ impl Sides<'_> {
         contact.flags.set(ContactFlags::CHANGED, false);
     }
 
-    /// Clears the bit of deep overlap if a recycled contact does not overlap deeply any more.
+    /// Clears the bit of deep overlap if a recycled contact no longer overlaps deeply.
     #[inline(always)]
     pub(super) fn after_recycling(&self, contact: &mut Contact) {
         if contact.flags.has(ContactFlags::DEEP) {
@@ -103,7 +103,7 @@ impl Sides<'_> {
         }
     }
 
-    /// Whether the shapes overlap by more than a share of the smaller one's reach.
+    /// Whether the shapes overlap by more than a share of the smaller reach.
     fn overlaps_by(&self, share: f32, contact: &Contact) -> bool {
         let deepest = contact.manifold.points().iter().fold(0.0, |d, p| min(d, p.separation));
         let [a, b] = self.reaches();
@@ -111,8 +111,8 @@ impl Sides<'_> {
         deepest < 0.0 && deepest < -share * reach
     }
 
-    /// Sets the bits that name the platform, the body which contacts do not turn. Two round shapes have none,
-    /// since one can roll under the same normal; what stands on its flat end is not round there.
+    /// Sets the bits of the platform, the body that contacts do not turn. Two round shapes have no platform,
+    /// because one can roll under an unchanged normal. A curved shape on its flat end is not round.
     #[inline(always)]
     pub(super) fn set_platform(&self, contact: &mut Contact) {
         let is_round = |side: usize| match self.shapes()[side] {

@@ -1,11 +1,10 @@
-//! What contacts and other constraints between two bodies have in common: how they take their place in
-//! colours and islands, and how they wake.
+//! Common part of contacts and other constraints between two bodies: colours, islands and waking.
 
 use super::manager::ContactManager;
 use crate::graph::{ColorSlot, ConstraintId, ConstraintKind, LinkId};
 use crate::table::{BodyKind, NONE};
 
-/// What colours, islands and sleep ask of a constraint.
+/// The part of a constraint that colours, islands and sleep need.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tie {
     pub(super) bodies: [u32; 2],
@@ -15,8 +14,8 @@ pub(super) struct Tie {
 }
 
 impl ContactManager<'_> {
-    /// Connects two live, different bodies by a constraint of a kind. They wake, and are in one island from
-    /// now on. Returns its id.
+    /// Connects two live, different bodies by a constraint of a kind. Both wake, and share an island from now
+    /// on. Returns its id.
     pub(crate) fn connect(&mut self, kind: ConstraintKind, bodies: [u32; 2]) -> u32 {
         debug_assert!(kind != ConstraintKind::Contact, "contacts are created from colliders");
         self.wake_bodies(bodies);
@@ -25,7 +24,7 @@ impl ContactManager<'_> {
         id
     }
 
-    /// Removes a constraint that is not a contact. What it held is woken.
+    /// Removes a constraint that is not a contact. Wakes its bodies if it was solved.
     pub(crate) fn disconnect(&mut self, kind: ConstraintKind, id: u32) {
         let constraint = ConstraintId { kind, id };
         let tie = self.tie(constraint);
@@ -36,7 +35,7 @@ impl ContactManager<'_> {
         self.bodies.constraints_mut(kind).remove(id);
     }
 
-    /// Removes all constraints of a body but its contacts.
+    /// Removes all constraints of a body except its contacts.
     pub(super) fn disconnect_body(&mut self, body: u32) {
         for constraint in self.constraints_of_body(body) {
             if constraint.kind != ConstraintKind::Contact {
@@ -73,7 +72,7 @@ impl ContactManager<'_> {
         }
     }
 
-    /// The bodies that bar a colour: the dynamic ones.
+    /// The dynamic bodies, which occupy a colour.
     pub(super) fn movable(&self, bodies: [u32; 2]) -> [Option<u32>; 2] {
         bodies.map(|b| (b != NONE && self.bodies[b].kind == BodyKind::Dynamic).then_some(b))
     }
@@ -82,7 +81,7 @@ impl ContactManager<'_> {
         body != NONE && self.bodies[body].awake
     }
 
-    /// The dynamic body of a constraint with a kinematic one that moves.
+    /// The dynamic body of a solved constraint with a moving kinematic body.
     pub(super) fn carried(&self, tie: &Tie) -> Option<u32> {
         let moves = |body: u32| self.is_awake(body) && self.bodies[body].kind == BodyKind::Kinematic;
         if !tie.is_solved || !tie.bodies.into_iter().any(moves) {
@@ -91,7 +90,7 @@ impl ContactManager<'_> {
         self.movable(tie.bodies).into_iter().flatten().next()
     }
 
-    /// Lets a constraint take effect: wakes both sides, joins their islands, gives it a colour.
+    /// Puts a constraint into effect: wakes both sides, joins their islands, gives it a colour.
     pub(super) fn attach(&mut self, constraint: ConstraintId) {
         let tie = self.tie(constraint);
         if !tie.is_solved {
@@ -110,7 +109,7 @@ impl ContactManager<'_> {
         self.refresh(constraint);
     }
 
-    /// Takes away the effect of a constraint.
+    /// Takes a constraint out of its colour and island.
     pub(super) fn detach(&mut self, constraint: ConstraintId) {
         self.uncolor(constraint);
         if let Some(islands) = &mut self.islands {
@@ -118,7 +117,8 @@ impl ContactManager<'_> {
         }
     }
 
-    /// Colours a constraint, and a contact also makes active, exactly if its state asks for it.
+    /// Gives a constraint a colour exactly while its state requires one. A contact also becomes active or
+    /// inactive.
     pub(super) fn refresh(&mut self, constraint: ConstraintId) {
         let tie = self.tie(constraint);
         let movable = self.movable(tie.bodies);
@@ -163,7 +163,7 @@ impl ContactManager<'_> {
     /// kinematic body that moves carries it.
     ///
     /// # Panics
-    /// With the invariant that does not hold.
+    /// If an invariant does not hold; the message names it.
     pub(super) fn validate_tie(&self, constraint: ConstraintId) -> [bool; 2] {
         let tie = self.tie(constraint);
         let movable = self.movable(tie.bodies);

@@ -1,12 +1,12 @@
 //! Impulses that sliding colliders transfer from piece to piece of the ground.
 //!
-//! A body that leaves a tile, or comes to another facet of a mesh, loses the contact points there with their
-//! impulses. It would have to sink for the other points to take its weight up again, and friction, limited by
-//! the impulses of the moment, would be too weak, and too strong as the body is lifted. So the impulses of
-//! points that a sliding collider loses go to the nearest points that it has with the same normal. Weight is
-//! kept, and with it friction.
+//! A body that leaves a tile, or comes to another facet of a mesh, loses contact points with their impulses.
+//! The body would have to sink before its other points carry the weight again. Friction, limited by the
+//! present impulses, would be too weak meanwhile, and too strong as the body is lifted. So the impulse of
+//! each point that a sliding collider loses goes to its nearest point with the same normal. This keeps the
+//! supported weight, and with it friction.
 //!
-//! Points are lost in parallel; one thread transfers their impulses in the order of contacts.
+//! Workers note lost points in parallel; one thread transfers their impulses in the order of contacts.
 
 use super::input::NarrowPhaseInput;
 use super::record::{Contact, ContactFlags, LoadPoint, LostImpulse, Manifold, ManifoldPoint};
@@ -32,8 +32,8 @@ fn place(side: usize, p: &ManifoldPoint, offset: Vector) -> Vector {
     if side == 0 { p.anchor } else { p.anchor - offset }
 }
 
-/// The points under load of a manifold of a contact, numbered from `first` on, each with what is lost with
-/// it. `side` is the one of the collider that slides. `offset` is as in [`Frozen`](super::Frozen).
+/// The loaded points of a manifold of a contact, numbered from `first`, each with its impulse to transfer.
+/// `side` is the side of the sliding collider. `offset` is as in [`Frozen`](super::Frozen).
 fn loaded(
     [contact, first]: [u32; 2],
     collider: u32,
@@ -59,8 +59,8 @@ impl PreviousManifold {
         Some(Self { side, manifold: contact.manifold, offset: contact.frozen.offset })
     }
 
-    /// Adds the points that the contact has no more. `old_extra` are its old manifolds after the first, `new`
-    /// its present ones.
+    /// Adds the loaded points that the contact no longer has. `old_extra` are its old manifolds after the
+    /// first, `new` its present manifolds.
     pub(super) fn note_lost<'a>(
         &self,
         id: u32,
@@ -81,7 +81,7 @@ impl PreviousManifold {
     }
 }
 
-/// Adds the points of a manifold that is not solved any more.
+/// Adds the loaded points of a manifold that is no longer solved.
 pub(super) fn note_internal(
     (id, index): (u32, u32),
     side: usize,
@@ -89,7 +89,7 @@ pub(super) fn note_internal(
     m: &Manifold,
     lost: &mut Vec<LostImpulse>,
 ) {
-    // After those that were lost before.
+    // Numbered after the points of `note_lost`.
     let first = (1 << 31) + index * m.points.len() as u32;
     let points = loaded([id, first], contact.colliders[side], side, m, contact.frozen.offset);
     lost.extend(points.map(|(_, lost)| lost));
@@ -105,8 +105,8 @@ fn longest_axis(points: &[LoadPoint]) -> usize {
     (1..DIM).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best })
 }
 
-/// The nearest point with the same normal as a lost one. Points are sorted along an axis; of two as near the
-/// first of the collider's is taken.
+/// The nearest point with the normal of a lost point. Points are sorted along `axis`. Of equally near points,
+/// the first in the collider's order is taken.
 fn nearest<'a>(points: &'a [LoadPoint], axis: usize, lost: &LostImpulse) -> Option<&'a LoadPoint> {
     let along = |p: &LoadPoint| p.place.to_array()[axis] - lost.place.to_array()[axis];
     let (mut below, mut above) = points.split_at(points.partition_point(|p| along(p) < 0.0));
@@ -136,7 +136,7 @@ fn nearest<'a>(points: &'a [LoadPoint], axis: usize, lost: &LostImpulse) -> Opti
 }
 
 impl ContactTable {
-    /// Gives the impulses of lost points to the nearest ones, and empties the list.
+    /// Transfers the impulses of lost points to the nearest points, and clears the list.
     pub(super) fn transfer_impulses(&mut self, input: &NarrowPhaseInput) {
         let (mut lost, mut points) =
             (core::mem::take(&mut self.lost), core::mem::take(&mut self.load_points));
@@ -155,7 +155,8 @@ impl ContactTable {
         (self.lost, self.load_points) = (lost, points);
     }
 
-    /// Lists the points of a sliding collider that bear load.
+    /// Lists the points of a sliding collider that can bear load: closer than the tolerance, in a solved
+    /// manifold.
     fn list_load_points(&self, input: &NarrowPhaseInput, collider: u32, points: &mut Vec<LoadPoint>) {
         points.clear();
         for (id, index, side, m) in self.sliding_manifolds(input, collider).filter(|(.., m)| !m.is_internal) {
@@ -174,8 +175,8 @@ impl ContactTable {
         }
     }
 
-    /// The manifolds of the contacts in which a collider slides: the contact, the number of the manifold in
-    /// it, and the side of the collider.
+    /// The manifolds of the contacts in which a collider slides, each with its contact, its number in the
+    /// contact, and the collider's side.
     pub(super) fn sliding_manifolds(
         &self,
         input: &NarrowPhaseInput,

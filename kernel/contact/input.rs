@@ -1,4 +1,4 @@
-//! What the narrow phase reads, and what follows from it for the two sides of a contact.
+//! Input of the narrow phase, and the quantities derived from it for the two sides of a contact.
 
 use super::record::Contact;
 use crate::manifold::LocalManifold;
@@ -8,11 +8,11 @@ use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach, Ve
 
 /// Computes the manifolds of pairs with a [foreign shape](crate::shape::Shape::Foreign).
 pub trait ManifoldSource: Sync {
-    /// Adds the manifolds of colliders `a` and `b`, `pose` being where B is in A's frame: in A's frame with
-    /// normals from A to B, with points up to `prediction` metres apart.
+    /// Adds the manifolds of colliders `a` and `b` in A's frame, with normals from A to B and points up to
+    /// `prediction` metres apart. `pose` is B's pose in A's frame.
     fn manifolds(&self, colliders: [u32; 2], pose: &Pose, prediction: f32, out: &mut Vec<LocalManifold>);
 
-    /// The same for a collider and a ball, whose centre is given in the collider's frame.
+    /// Adds the manifolds of a collider and a ball whose centre is given in the collider's frame.
     fn ball_manifolds(
         &self,
         collider: u32,
@@ -29,13 +29,13 @@ impl ManifoldSource for () {
     fn ball_manifolds(&self, _: u32, _: Vector, _: f32, _: f32, _: &mut Vec<LocalManifold>) {}
 }
 
-/// What the narrow phase reads; constant while it runs.
+/// Input of the narrow phase, constant while it runs.
 pub struct NarrowPhaseInput<'a> {
     /// The bodies.
     pub bodies: &'a BodyTable,
     /// The colliders.
     pub colliders: &'a ColliderTable,
-    /// For pairs with a foreign shape.
+    /// Computes the manifolds of pairs with a foreign shape.
     pub source: &'a dyn ManifoldSource,
     /// The step's length, in seconds.
     pub dt: f32,
@@ -44,8 +44,8 @@ pub struct NarrowPhaseInput<'a> {
     /// The distance up to which contacts are predicted at rest, in metres, where the colliders'
     /// speculative margins allow it.
     pub speculative: f32,
-    /// How far, in metres, a surface may have moved against the other for the manifold to be recycled;
-    /// 0 switches recycling off.
+    /// Maximum relative motion of the surfaces, in metres, up to which a manifold is recycled; 0 switches
+    /// recycling off.
     pub recycle_distance: f32,
     /// Whether points inherit the impulses of the last step.
     pub match_points: bool,
@@ -98,7 +98,7 @@ impl NarrowPhaseInput<'_> {
         }
     }
 
-    /// The velocity of a body, 0 of [`NONE`].
+    /// The velocity of a body, 0 for [`NONE`].
     #[inline(always)]
     pub(super) fn velocity(&self, body: u32) -> Velocity {
         match body {
@@ -113,8 +113,8 @@ impl NarrowPhaseInput<'_> {
         body != NONE && self.bodies[body].kind == BodyKind::Dynamic
     }
 
-    /// What a [`ManifoldSource`] is asked of a contact with a foreign shape: where B is in A's frame, and how
-    /// far apart points may be.
+    /// Query to a [`ManifoldSource`] for a contact with a foreign shape: B's pose in A's frame, and the
+    /// maximum separation of points.
     pub fn foreign_view(&self, contact: &Contact) -> (Pose, f32) {
         let mut fixed = [None; 2];
         let sides = self.sides(contact, &mut fixed);
@@ -128,8 +128,8 @@ pub(super) struct Sides<'a> {
     pub(super) input: &'a NarrowPhaseInput<'a>,
     pub(super) colliders: [u32; 2],
     pub(super) bodies: [u32; 2],
-    /// The poses of the bodies; of a collider without one, its own. By reference: a copy is written in other
-    /// pieces than it is read in, which a processor waits for.
+    /// The poses of the bodies, or of colliders without a body. By reference: a copy is written and read in
+    /// different sizes, which stalls the processor.
     pub(super) poses: [&'a BodyPose; 2],
 }
 
@@ -165,7 +165,7 @@ impl<'a> Sides<'a> {
         self.shape_poses()[0].rotation
     }
 
-    /// Where B's shape is in that frame.
+    /// The pose of B's shape in the frame of A's shape.
     #[inline(always)]
     pub(super) fn relative(&self) -> Pose {
         let [a, b] = self.shape_poses();
@@ -185,14 +185,14 @@ impl<'a> Sides<'a> {
         [self.input.is_dynamic(a), self.input.is_dynamic(b)]
     }
 
-    /// How far apart the shapes are kept, in metres.
+    /// The sum of both margins: the distance kept between the shapes, in metres.
     #[inline(always)]
     pub(super) fn margin(&self) -> f32 {
         let [a, b] = self.reaches();
         a.margin + b.margin
     }
 
-    /// Each side's revision: of its collider and its body together.
+    /// Each side's revision, combined from its collider and its body.
     #[inline(always)]
     pub(super) fn revisions(&self) -> [u32; 2] {
         let ([a, b], poses) = (self.reaches(), self.poses);
@@ -202,8 +202,8 @@ impl<'a> Sides<'a> {
         [of(a, poses[0]), of(b, poses[1])]
     }
 
-    /// The distance up to which contacts are predicted at rest: no body's speculative margin is exceeded.
-    /// What does not move has none.
+    /// The distance up to which contacts are predicted at rest: no body's speculative margin is exceeded. A
+    /// body that does not move sets no limit.
     pub(super) fn near(&self) -> f32 {
         let [a, b] = self.reaches().map(|reach| match reach.turning {
             0.0 => f32::MAX,
@@ -212,7 +212,8 @@ impl<'a> Sides<'a> {
         max(self.input.tolerance, min(self.input.speculative, min(a, b)))
     }
 
-    /// The velocity of a side's body, no faster than to its speculative margin in the step.
+    /// The velocity of a side's body, limited so that its motion in the step stays within its speculative
+    /// margin.
     #[inline(always)]
     fn predicted_velocity(&self, side: usize) -> Vector {
         let (velocity, margin) = (self.velocity(side).linear, self.reaches()[side].speculative);
@@ -221,18 +222,18 @@ impl<'a> Sides<'a> {
         if is_beyond { velocity * (margin / way.length()) } else { velocity }
     }
 
-    /// Surfaces up to this distance apart count as a contact: as far as they can close in this step if
-    /// nothing turns. The velocity of each body is limited by its own speculative margin.
+    /// Maximum separation of a contact: the distance that the surfaces can close in this step without
+    /// turning. The velocity of each body is limited by its own speculative margin.
     pub(super) fn prediction(&self) -> f32 {
         max(self.near(), self.predicted_motion().length())
     }
 
-    /// How far B moves against A in this step, in world axes, as far as their speculative margins allow.
+    /// Motion of B relative to A in this step, in world axes, within their speculative margins.
     pub(super) fn predicted_motion(&self) -> Vector {
         (self.predicted_velocity(1) - self.predicted_velocity(0)) * self.input.dt
     }
 
-    /// The [`prediction`](Self::prediction), and as far as turning may close as well.
+    /// The [`prediction`](Self::prediction) plus the distance that turning may close.
     pub(super) fn farthest(&self, prediction: f32) -> f32 {
         let mut turning = 0.0;
         let NarrowPhaseInput { dt, speculative, .. } = *self.input;
@@ -261,7 +262,7 @@ impl<'a> Sides<'a> {
     }
 }
 
-/// The smaller of two reaches. Half-spaces reach nowhere, and count by the other side.
+/// The smaller of two reaches. A half-space has reach 0, and the other side's reach counts.
 #[inline(always)]
 pub(super) fn smaller<N: Lane>([a, b]: [N; 2]) -> N {
     let is_half_space = N::or(a.eq(N::ZERO), b.eq(N::ZERO));

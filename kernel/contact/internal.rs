@@ -1,14 +1,14 @@
-//! Internal edges: edges and sides of pieces that together are one surface.
+//! Internal edges: inner edges and sides of pieces that together form one surface.
 //!
 //! A body that slides over flush tiles, or over the triangles of a mesh, meets the sides and edges of the
 //! pieces ahead. Each piece alone is an obstacle; together they are a plane. So the manifolds of a collider
-//! are compared: one whose points on the ground all lie on the plane of another manifold, or below it, stops
-//! nothing that the other does not hold already, and is not solved. Points on a kerb, a wall or the other
-//! side of a groove lie above that plane. A body that has only its foot at a wall has no such point: there
-//! the wall itself is looked at, whether it goes on above the plane.
+//! are compared. A manifold whose ground points all lie on or below the plane of another manifold is
+//! redundant, and is not solved. Points on a kerb, a wall or the far side of a groove lie above that plane. A
+//! body that touches a wall only at its foot has no point above the plane: there a probe tests whether the
+//! wall continues above it.
 //!
-//! Only manifolds of moving colliders with ground are compared: what is not dynamic, or is dynamic and at
-//! rest. The result depends on positions and velocities, not on the number of threads.
+//! Only manifolds between moving colliders and ground are compared. Ground is a body that is not dynamic, or
+//! a dynamic body at rest. The result depends on positions and velocities, not on the number of threads.
 
 use super::buffers::WorkerBuffers;
 use super::impulse_transfer;
@@ -22,37 +22,37 @@ use crate::thread_pool::ThreadPool;
 use crate::tuning::contact::{FLUSH, MOVING, RESTING, RISES, SAME_FACE, SLIDING};
 use crate::tuning::manifold::{ALIKE, MARGIN, PARALLEL, SIDEWAYS};
 
-/// How many colliders a worker takes at a time.
+/// Colliders per block of work.
 const BLOCK: usize = 16;
 
-/// A manifold, seen by the collider on one side of it.
+/// A manifold in the view of its sliding collider.
 struct Seen<'a> {
     manifold: &'a Manifold,
     /// From the ground to the collider.
     normal: Vector,
     /// From the collider's body to the origin of the anchors.
     origin: Vector,
-    /// How far above a plane its points may lie.
+    /// Maximum height of its points above a plane that still counts as flush.
     flush: f32,
-    /// How far below the plane the collider may reach.
+    /// Maximum depth of the collider below the supporting plane, beyond that contact's penetration.
     below: f32,
-    /// How far the collider moves against the ground until they meet; 0 where it is now.
+    /// Motion of the collider relative to the ground until they meet; 0 for points at the present pose.
     motion: Vector,
-    /// How far it moves in the step, where points of a composite are met one after the other.
+    /// Motion over the whole step, if points of a composite are met at different times; otherwise 0.
     way: Vector,
     place: Place,
 }
 
-/// Where the anchors are of shapes that meet later in the step.
+/// Position of the anchors of shapes that meet later in the step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Place {
-    /// Between both, where they meet.
+    /// Midway between both surfaces, at the meeting pose.
     Meeting,
-    /// At the ground's surface, half of the separation above it.
+    /// Half of the separation above the ground's surface.
     Ground,
-    /// At the collider's surface where it is now, half of the separation below it.
+    /// Half of the separation below the collider's present surface.
     Collider,
-    /// Where they meet, moved with the collider to where it is now.
+    /// At the meeting point, moved back with the collider to its present pose.
     Moved,
 }
 
@@ -61,7 +61,7 @@ impl<'a> Seen<'a> {
         let mut fixed = [None; 2];
         let sides = input.sides(contact, &mut fixed);
         let (poses, ground) = (sides.poses, 1 - side);
-        // Points of a recycled manifold keep their places on the ground.
+        // Points of a recycled manifold keep their positions on the ground.
         let frozen = if ground == 1 { contact.frozen.offset } else { Vector::ZERO };
         let origin = (poses[ground].center - poses[side].center).to_local() - frozen;
         let sign = if side == 0 { -1.0 } else { 1.0 };
@@ -93,14 +93,14 @@ impl<'a> Seen<'a> {
         Self { manifold, normal: manifold.normal * sign, origin, flush, below, motion, way, place }
     }
 
-    /// How far the collider moves until a point is met.
+    /// Motion of the collider until a point is met.
     fn motion(&self, p: &ManifoldPoint) -> Vector {
         let share = (p.separation - p.frozen_separation) / -self.normal.dot(self.way);
-        // What slides along a plane hardly closes.
+        // Motion along the plane hardly closes the gap: the share is at most the whole step.
         if share > 0.0 { self.motion + self.way * min(share, 1.0) } else { self.motion }
     }
 
-    /// The points on the ground, and those across on the collider, when they meet.
+    /// Pairs of a point on the ground and the opposite point on the collider, at the meeting pose.
     fn points(&self) -> impl Iterator<Item = [Vector; 2]> + '_ {
         self.manifold.points().iter().map(|p| {
             let motion = self.motion(p);
@@ -121,13 +121,13 @@ impl<'a> Seen<'a> {
         self.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(self.normal)))
     }
 
-    /// The height of the highest point on the ground of another manifold over this plane.
+    /// Height of the other manifold's highest ground point above this plane.
     fn highest(&self, other: &Seen) -> f32 {
         other.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(self.normal))) - self.plane()
     }
 
-    /// The least height of a plane, with a normal of a group, that has all of its points at most so far above
-    /// it that they are flush.
+    /// Minimum height of a plane, with a normal of the group, for all points of this manifold to be flush
+    /// with it.
     fn least_top(&self, group: &Parallel) -> f32 {
         let (mut top, mut reach): (f32, f32) = (f32::NEG_INFINITY, 0.0);
         for [p, _] in self.points() {
@@ -137,8 +137,9 @@ impl<'a> Seen<'a> {
         top - self.flush - rounding * reach.sqrt()
     }
 
-    /// Whether another manifold, which is not parallel, holds what this one would stop. If all points of both
-    /// are in one place, it does where the other's plane is that of both pieces of ground.
+    /// Whether `other`, which is not parallel, already prevents every motion that this manifold prevents. At
+    /// a seam, with the points of both on each other's planes, only if the plane of `other` continues over
+    /// both pieces.
     fn is_held_by(&self, other: &Seen, is_plane_of_both: impl FnOnce() -> bool) -> bool {
         let highest = other.highest(self);
         if !(highest <= self.flush) {
@@ -150,7 +151,7 @@ impl<'a> Seen<'a> {
         }
         let nearest = other.manifold.points().iter().fold(f32::INFINITY, |s, p| min(s, p.separation));
         let lowest = self.points().zip(self.manifold.points()).fold(f32::INFINITY, |low, ([_, own], p)| {
-            // Until they meet the collider goes down to the plane, not into it.
+            // Until they meet, the collider moves down to the plane, not into it.
             let down = self.motion(p).dot(other.normal);
             min(low, own.dot(other.normal) + max(-max(nearest, 0.0) - down, 0.0))
         });
@@ -158,20 +159,20 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// What a manifold is beside the others of a moving collider.
+/// Classifies a manifold against the collider's other manifolds.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
-    /// The collider is to be stopped by it.
+    /// Stops the collider.
     Obstacle,
-    /// Another one holds what it would stop.
+    /// Redundant: another manifold prevents the same motion.
     Internal,
-    /// The collider is to be stopped by it along another normal: that of a plane which its side is a little
-    /// askew to, or that of a wall whose foot its upper side leans over.
+    /// Stops the collider along another normal: the normal of a nearly parallel plane or, where its own
+    /// normal points down at a wall, the component of its own normal along the plane.
     Turned(Vector),
 }
 
 impl Sliding {
-    /// Whether another manifold of the collider holds the same as this one.
+    /// Whether another manifold of the collider has the same normal, within the tolerance.
     #[inline(always)]
     fn is_parallel(&self, other: &Self) -> bool {
         let apart = self.normal - other.normal;
@@ -179,30 +180,30 @@ impl Sliding {
         if !(self.is_round && other.is_round && squared < PARALLEL * PARALLEL) || self.is_face {
             return squared < PARALLEL * PARALLEL;
         }
-        // The point of round shapes moves with the normal, two points only across their line.
+        // The contact point of round shapes moves with the normal; two points move only across their line.
         (apart - self.line * apart.dot(self.line)).length_squared() < ALIKE * ALIKE
     }
 }
 
-/// Whether a shape is a point or a line and a radius: it has no faces to be clipped.
+/// Whether a shape is a point or segment with a radius: it has no faces to clip.
 fn is_line(shape: &Shape) -> bool {
     matches!(shape, Shape::Ball(_) | Shape::Capsule(_) | Shape::Segment(_))
 }
 
-/// The direction of a vector, 0 for none.
+/// The unit vector along `v`; 0 for the zero vector.
 fn unit(v: Vector) -> Vector {
     let length = v.length();
     if length > 0.0 { v * (1.0 / length) } else { Vector::ZERO }
 }
 
 impl NarrowPhaseInput<'_> {
-    /// The side of a contact whose collider slides over the other one as over ground.
+    /// The side of a contact whose collider slides over the other collider as over ground.
     pub(super) fn sliding_side(&self, contact: &Contact) -> Option<usize> {
         let unit = self.bodies.length_unit();
         let square = |speed: f32| (speed * unit) * (speed * unit);
         let velocity = |side: usize| self.velocity(contact.bodies[side]).linear;
         let relative = (velocity(1) - velocity(0)).length_squared();
-        // Most do not move. And deep overlap is pushed out from all sides.
+        // Most colliders do not move. Deep overlap is pushed out on all sides.
         if !(relative > square(min(SLIDING, MOVING))) || contact.flags.has(ContactFlags::DEEP) {
             return None;
         }
@@ -215,9 +216,9 @@ impl NarrowPhaseInput<'_> {
         }
     }
 
-    /// Notes a contact whose manifolds are to be compared with others of the same collider, and the manifolds
-    /// of one that slides no more. `extra` are its recycled manifolds after the first; `has_more` tells
-    /// whether it has several, recycled or new.
+    /// Notes a sliding contact for comparison with the collider's other contacts, or the marked manifolds of
+    /// a contact that no longer slides. `extra` are its recycled manifolds after the first; `has_more` tells
+    /// whether it has several manifolds, recycled or new.
     #[inline(always)]
     pub(super) fn note_sliding(
         &self,
@@ -240,8 +241,8 @@ impl NarrowPhaseInput<'_> {
         }
     }
 
-    /// How far the ground on the other side of a contact reaches in a direction, from the centre of mass of
-    /// the side's body; `None` for surfaces and planes.
+    /// Extent in a direction of the ground on the other side of a contact, from the centre of mass of this
+    /// side's body; `None` for surfaces and planes.
     fn top(&self, contact: &Contact, side: usize, direction: Vector) -> Option<f32> {
         let mut fixed = [None; 2];
         let sides = self.sides(contact, &mut fixed);
@@ -250,7 +251,7 @@ impl NarrowPhaseInput<'_> {
         Some(((pose.position - center).to_local() + pose.rotation.rotate(farthest)).dot(direction))
     }
 
-    /// Whether the ground on the other side of a contact goes on above the plane of a holding manifold.
+    /// Whether the ground on the other side of a contact continues above the plane of manifold `holding`.
     fn rises(
         &self,
         contact: &Contact,
@@ -266,7 +267,7 @@ impl NarrowPhaseInput<'_> {
         let highest = seen.points().map(|[p, _]| p).reduce(|a, b| if b.dot(up) > a.dot(up) { b } else { a });
         let Some(foot) = highest.filter(|_| steepness > 0.0) else { return false };
         let height = RISES * seen.flush;
-        // Up along the ground, or straight up and a little into it: a normal that points down may be
+        // Probes up along the ground, or straight up and slightly into it: a normal that points down may be
         // the collider's.
         let direction =
             if cos >= 0.0 { along * (1.0 / steepness) } else { up - level * (0.25 / level.length()) };
@@ -281,8 +282,8 @@ impl NarrowPhaseInput<'_> {
 }
 
 impl ContactTable {
-    /// Marks the manifolds of internal edges of the colliders that the workers noted, so that they are not
-    /// solved. Adds their points to those that were lost.
+    /// Marks the manifolds at internal edges of the noted colliders, so that they are not solved, and adds
+    /// their loaded points to the lost points.
     pub(super) fn mark_internal(
         &mut self,
         input: &NarrowPhaseInput,
@@ -323,8 +324,8 @@ impl ContactTable {
                 manifold.points.iter_mut().for_each(|p| (p.impulse, p.total_impulse) = (0.0, 0.0));
             }
             let contact = &mut self.contacts[id as usize];
-            // The collider passes an edge, and meets the face behind it. Of a composite, one
-            // contact has both.
+            // The collider passes an edge and then meets the face behind it, so this manifold is not
+            // recycled. In a composite one contact has both.
             if !contact.flags.has(ContactFlags::COMPOSITE) {
                 contact.flags.set(ContactFlags::FROZEN, false);
             }
@@ -336,7 +337,8 @@ impl ContactTable {
         }
     }
 
-    /// Adds the manifolds of a sliding collider whose mark is to change, and those that get another normal.
+    /// Lists the manifolds of a sliding collider whose mark changes, and the manifolds that get another
+    /// normal.
     fn find_internal(&self, input: &NarrowPhaseInput, collider: u32, worker: &mut WorkerBuffers) {
         let mut all = core::mem::take(&mut worker.slides);
         all.clear();
@@ -379,10 +381,10 @@ impl ContactTable {
         worker.parallel = groups;
     }
 
-    /// Groups manifolds that are parallel. Several groups are sorted, each by the heights of its planes.
+    /// Groups parallel manifolds. Several groups are each sorted by plane height.
     fn group_parallel(&self, input: &NarrowPhaseInput, all: &mut [Sliding], groups: &mut Vec<Parallel>) {
         groups.clear();
-        // Within half of the tolerance of one, all are parallel.
+        // Normals within half of the tolerance of one normal are parallel to each other.
         let tolerance = 0.5 * if all.iter().any(|m| m.is_round) { ALIKE } else { PARALLEL };
         for m in &mut *all {
             let near = groups.iter_mut().zip(0..).find_map(|(group, number)| {
@@ -417,7 +419,7 @@ impl ContactTable {
         Seen::new(input, contact, sliding.side, manifold)
     }
 
-    /// What a manifold is beside the others of the collider.
+    /// Classifies a manifold against the collider's other manifolds.
     fn role(
         &self,
         input: &NarrowPhaseInput,
@@ -430,13 +432,13 @@ impl ContactTable {
         let seen = &self.see(input, this);
         let (mut is_held, mut plane, mut level) = (false, None, None);
         for (group, _) in groups.iter().zip(0..).filter(|(_, number)| *number != this.group) {
-            // Planes below its points hold nothing of it.
+            // Planes below its points do not make it redundant.
             let least = seen.least_top(group);
             let others = all[group.range.clone()].iter().take_while(|other| !(other.height < least));
             for other in others.filter(|other| !this.is_parallel(other)) {
                 let holding = self.see(input, other);
-                // An edge of the collider is at a seam: the next piece ends at the plane of this one, but not
-                // the other way round.
+                // At a seam the ground of this manifold ends at the holding plane, but the holding ground
+                // does not end at the plane of this manifold.
                 let mut ends_at = |of: &Sliding, own: &Seen, plane: &Seen| {
                     let contact = self.get(of.contact);
                     let top = input.top(contact, of.side, plane.normal);
@@ -461,7 +463,8 @@ impl ContactTable {
                     return Role::Internal;
                 }
                 is_held = true;
-                // The plane is held where the other has points. Here the collider may come down by turning.
+                // `other` supports the plane only at its own points. Here the collider may come down by
+                // turning.
                 let is_plane = [this, other].into_iter().all(|of| {
                     let top = input.top(self.get(of.contact), of.side, holding.normal);
                     top.is_none_or(|top| top - holding.plane() <= holding.flush)
@@ -478,7 +481,7 @@ impl ContactTable {
         }
     }
 
-    /// Gives a manifold another normal, from the ground to the collider, with the same points on the ground.
+    /// Replaces a manifold's normal, from the ground to the collider. Its points on the ground stay.
     fn turn(&mut self, id: u32, index: u32, normal: Vector) {
         let side = if self.get(id).flags.has(ContactFlags::SLIDES_B) { 1.0 } else { -1.0 };
         let manifold = self.manifold_mut(id, index);
@@ -495,8 +498,8 @@ impl ContactTable {
         manifold.normal = new;
     }
 
-    /// Whether the first of two colliders stands on the second, whose plane has this normal: then its foot
-    /// is an obstacle.
+    /// Whether the first of two colliders stands on the second along this plane normal: then its foot is an
+    /// obstacle.
     fn stands_on(&self, [standing, ground]: [u32; 2], normal: Vector) -> bool {
         standing != ground
             && self.find(standing, ground).is_some_and(|id| {

@@ -1,4 +1,5 @@
-//! The manifolds of one contact: computed in A's frame, then put in place of the old ones in world axes.
+//! Updates the manifolds of one contact: computes them in A's frame, and replaces the old manifolds in world
+//! axes.
 
 use super::buffers::WorkerBuffers;
 use super::input::Sides;
@@ -9,9 +10,9 @@ use crate::math::{Pose, Rot, Vector, min};
 use crate::shape::{Ball, Shape};
 use crate::tuning::contact::SAME_FACE;
 
-/// Computes the manifold of two native shapes where they are now, with points up to `prediction` apart,
-/// margins not subtracted. Points on rims are where they will be in the middle of the step; returns how far
-/// the surfaces may move until these lag behind.
+/// Computes the manifold of two native shapes at their present poses, with points up to `prediction` apart,
+/// margins not subtracted. Rim points are placed at the middle of the step; returns how far the surfaces may
+/// move before these points lag behind.
 #[inline(always)]
 pub(super) fn collide(
     sides: &Sides,
@@ -26,14 +27,14 @@ pub(super) fn collide(
         return f32::INFINITY;
     }
     let spin = sides.velocity(1).angular - sides.velocity(0).angular;
-    // A point that does not touch, moved past a seam of the ground, would not be recognised as one of
-    // an inner edge.
+    // Only touching points are moved: a separated point moved past a seam of the ground would not be
+    // recognised as a point of an inner edge.
     let (near, turn) = (sides.margin(), spin * (0.5 * sides.input.dt));
     manifold::midstep_rims(shapes, sides.frame(), &relative, turn, near, local)
 }
 
-/// Whether a ball overlaps a shape, given the ball's pose in the shape's frame. Shapes of the embedder are
-/// not known: false.
+/// Whether a ball overlaps a shape, given the ball's pose in the shape's frame. Always false for foreign
+/// shapes.
 pub(super) fn touches(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut WorkerBuffers) -> bool {
     let WorkerBuffers { composite, local, .. } = buffers;
     let (ball, mut found) = (Shape::Ball(ball), LocalManifold::default());
@@ -50,9 +51,9 @@ pub(super) fn touches(shape: &Shape, ball: Ball, pose: &Pose, buffers: &mut Work
     found.count > 0
 }
 
-/// Adds the manifolds of two shapes of which one is composite, margins not subtracted. The motion is that of
-/// B against A in this step, in world axes; parts farther away than `met` may be passed by. Returns a lower
-/// bound of the distance between the shapes.
+/// Adds the manifolds of a pair with a composite shape, margins not subtracted. The motion is B's relative to
+/// A in this step, in world axes; parts farther away than `met` may be passed by. Returns a lower bound of
+/// the distance between the shapes.
 pub(super) fn collide_parts(
     sides: &Sides,
     contact: &mut Contact,
@@ -75,8 +76,8 @@ pub(super) fn collide_parts(
     gap
 }
 
-/// Removes the points of a sensor's contact at which the surfaces are apart and do not meet in this step.
-/// Returns the least separation of those, or infinity.
+/// Removes the separated points of a sensor's contact that do not close in this step. Returns the smallest
+/// separation of the removed points, or infinity.
 pub(super) fn keep_met(sides: &Sides, found: &mut Vec<LocalManifold>) -> f32 {
     let motion = sides.frame().inverse_rotate(sides.predicted_motion());
     let margin = sides.margin();
@@ -98,8 +99,8 @@ pub(super) fn keep_met(sides: &Sides, found: &mut Vec<LocalManifold>) -> f32 {
     gap
 }
 
-/// Puts the manifolds in `buffers.local` in place of the contact's. Points keep the impulses of the old ones.
-/// Manifolds after the first come to `buffers.extra`; `old_extra` are the old ones.
+/// Replaces the contact's manifolds by `buffers.local`. Points inherit the impulses of matching old points.
+/// Manifolds after the first go to `buffers.extra`; `old_extra` are the old manifolds after the first.
 pub(super) fn replace(
     sides: &Sides,
     contact: &mut Contact,
@@ -166,12 +167,12 @@ fn to_world(local: &LocalManifold, rotation: Rot, to_shape: Vector, margin: f32)
     m
 }
 
-/// Varies which point comes first over the contacts. Points that follow each other in pairs still do.
+/// Varies the first point from contact to contact. Consecutive pairs of points stay together.
 ///
-/// The solver takes points one after the other, which favours some a little. If these were on the same side
-/// in every contact, a stack would lean to that side as it settles. So the numbers of the colliders choose
-/// the first point, by the R₂ sequence (M. Roberts, "The unreasonable effectiveness of quasirandom
-/// sequences", 2018): it spreads evenly along numbers that count up in one collider and in both. Bits of the
+/// The solver takes points in sequence, which slightly favours some of them. If the favoured points were on
+/// the same side in every contact, a stack would lean to that side as it settles. So the numbers of the
+/// colliders choose the first point, by the R₂ sequence (M. Roberts, "The unreasonable effectiveness of
+/// quasirandom sequences", 2018): it spreads evenly whether one or both of the numbers count up. Bits of the
 /// sum of the numbers would follow the rows of a wall.
 fn vary_first(m: &mut Manifold, [a, b]: [u32; 2]) {
     // 2³² / ρ and 2³² / ρ², where ρ³ = ρ + 1.
@@ -187,8 +188,8 @@ fn vary_first(m: &mut Manifold, [a, b]: [u32; 2]) {
     }
 }
 
-/// Copies the impulses of the old manifold that this one continues, of the same facets' material with the
-/// nearest normal. Points are matched by feature id.
+/// Copies the impulses of the old manifold with the same facet groups and the nearest normal. Points are
+/// matched by feature id.
 fn inherit<'a>(m: &mut Manifold, old: impl Iterator<Item = &'a Manifold>) {
     let mut best: Option<(&Manifold, f32)> = None;
     for o in old.filter(|o| o.count > 0 && o.groups == m.groups) {

@@ -2,8 +2,8 @@
 //! date, and [`ContactManager`], which alone changes contacts, colours and islands.
 //!
 //! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifold_update`, `time_of_impact`, `calm`,
-//! `internal` and `impulse_transfer` are its helpers and do not know it. `modify` takes what the embedder
-//! makes of its results.
+//! `internal` and `impulse_transfer` are its helpers and do not depend on it. `modify` takes the embedder's
+//! changes to its results.
 
 mod buffers;
 mod calm;

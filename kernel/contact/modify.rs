@@ -6,9 +6,9 @@ use crate::data::BitSet;
 use crate::table::NONE;
 
 impl ContactTable {
-    /// Replaces the manifolds of a contact after the update of this step; the next update computes them
-    /// anew. `changed` is what the update found to begin and end; this contact is entered or removed there
-    /// as is now true.
+    /// Replaces the manifolds of a contact after the update of this step; the next update computes them anew.
+    /// `changed` holds the contacts that began or ended in the update; this contact is inserted or removed to
+    /// match its new state.
     ///
     /// Manifolds without points, or with values that are not finite, are left out.
     pub fn change(
@@ -40,7 +40,8 @@ impl ContactTable {
         }
     }
 
-    /// Forgets the changes of contacts that the update is about to look at. Those of contacts at rest stay.
+    /// Forgets the changed surfaces of active contacts, which the update recomputes. Contacts at rest keep
+    /// theirs.
     pub(super) fn forget_changes(&mut self) {
         let active = &self.active;
         self.surfaces.retain(|(id, _), _| !active.contains(*id));
@@ -91,8 +92,8 @@ mod tests {
         (m, ManifoldSurface { friction: 0.5, ..ManifoldSurface::default() })
     }
 
-    /// A table with one contact of two colliders, which touched before the last update or not, and
-    /// does now or not.
+    /// A table with one contact of two colliders. `touched` is its state before the last update, `touches`
+    /// its present state.
     fn table(touched: bool, touches: bool) -> (ContactTable, BitSet) {
         let (mut bodies, mut colliders) = (BodyTable::default(), ColliderTable::default());
         for _ in 0..2 {

@@ -10,7 +10,7 @@ use crate::table::{ColliderTable, FacetMaterial, Material, NONE};
 pub struct ContactFlags(pub u16);
 
 impl ContactFlags {
-    /// Has points. Unless it is a sensor's or immovable, the solver takes it.
+    /// Has points. The solver takes it unless it is a sensor's, immovable or quiet.
     pub const TOUCHING: Self = Self(1 << 0);
     /// Detects only: no rows, no colour, no island.
     pub const SENSOR: Self = Self(1 << 1);
@@ -21,7 +21,7 @@ impl ContactFlags {
     pub const FOREIGN: Self = Self(1 << 3);
     /// The frozen pose is valid: the manifold may be recycled.
     pub const FROZEN: Self = Self(1 << 4);
-    /// The fat boxes do not overlap any more: the contact is to be destroyed.
+    /// The fat boxes no longer overlap: the contact is to be destroyed.
     pub const SEPARATED: Self = Self(1 << 5);
     /// The bodies were placed with deep overlap and have not separated since. Split impulses push them out.
     pub const DEEP: Self = Self(1 << 6);
@@ -45,11 +45,11 @@ impl ContactFlags {
     /// Collider B slid over A as over ground in the last update.
     pub const SLIDES_B: Self = Self(1 << 13);
 
-    /// A shape is a hull. As it turns, faces come near that a full manifold has no points of.
+    /// A shape is a hull: as it turns, faces may approach that have no points in a full manifold.
     pub const HULL: Self = Self(1 << 14);
 
-    /// The separations, if there are any, are those at the end of the last step, and the bodies' travels are
-    /// compared with those up to which there is no update.
+    /// The separations, if any, are current at the end of the last step, and the contact needs no update up
+    /// to [`calm_until`](Contact::calm_until).
     pub const CALM: Self = Self(1 << 15);
 
     /// Whether all bits of `other` are set.
@@ -62,7 +62,7 @@ impl ContactFlags {
     pub fn set(&mut self, other: Self, on: bool) {
         self.0 = if on { self.0 | other.0 } else { self.0 & !other.0 };
     }
-    /// The bits of either.
+    /// The union of the bits.
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
@@ -78,8 +78,8 @@ impl ContactFlags {
 pub struct ManifoldPoint {
     /// From body A's centre of mass, in world axes, at the frozen pose.
     pub anchor: Vector,
-    /// The separation at the frozen pose, in metres. Of shapes that meet later in the step it is that of
-    /// when they meet.
+    /// The separation at the frozen pose, in metres. For shapes that meet later in the step, the separation
+    /// at the meeting pose.
     pub frozen_separation: f32,
     /// The separation now, in metres.
     pub separation: f32,
@@ -88,7 +88,7 @@ pub struct ManifoldPoint {
     /// The sum of the normal impulses of all substeps of the last step, N·s; 0 if the
     /// [table](super::ContactTable::sum_impulses) keeps no sums.
     pub total_impulse: f32,
-    /// The features of both shapes that make this point.
+    /// Id of the features of both shapes at this point.
     pub feature: u32,
 }
 
@@ -101,10 +101,9 @@ pub struct Manifold {
     pub points: [ManifoldPoint; MAX_POINTS],
     /// The number of points.
     pub count: u8,
-    /// Whether an edge inside a surface made it: another manifold holds what it would stop, so it
-    /// is not solved.
+    /// Whether it lies at an internal edge: another manifold prevents the same motion, so it is not solved.
     pub is_internal: bool,
-    /// The groups of the facets of A and B that made it, 0 for the materials of the colliders; see
+    /// Material groups of the touching facets of A and B, 0 for the material of the collider; see
     /// [`FacetMaterials`](crate::table::FacetMaterials).
     pub groups: [u8; 2],
     /// The radii of A and B around their cores (centre, axis, polygon), in metres. Anchors are of the cores:
@@ -114,7 +113,7 @@ pub struct Manifold {
     pub friction_impulse: Vector,
     /// The impulse of the friction against turning about the normal, N·m·s.
     pub twist_impulse: NormalMoment,
-    /// Normal impulses that friction was not limited by yet, N·s.
+    /// Normal impulses that the friction limit does not include yet, N·s.
     pub friction_owed: f32,
 }
 
@@ -125,13 +124,13 @@ impl Manifold {
         &self.points[..usize::from(self.count)]
     }
 
-    /// How many points the solver takes.
+    /// The number of points that the solver takes.
     #[inline(always)]
     pub fn solved_points(&self) -> u32 {
         if self.is_internal { 0 } else { u32::from(self.count) }
     }
 
-    /// Whether a facet with a material of its own made it.
+    /// Whether a touching facet has a material of its own.
     #[inline(always)]
     pub fn has_own_surface(&self) -> bool {
         self.groups != [0; 2]
@@ -155,21 +154,21 @@ impl Manifold {
         ManifoldSurface {
             friction: friction.mix(other.friction),
             restitution: restitution.mix(other.restitution),
-            // What lies on A is to move along with A's surface, and A along with that of B.
+            // A body on A moves along with A's surface, and A moves along with B's surface.
             velocity: a.1 - b.1,
         }
     }
 }
 
-/// What a changed manifold has beside its points.
+/// Coefficients and surface velocity of a manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ManifoldSurface {
     /// The coefficient of friction, not negative.
     pub friction: f32,
     /// The coefficient of restitution, not negative.
     pub restitution: f32,
-    /// The velocity that friction gives B's surface relative to A's, in world axes, m/s. Only what lies in
-    /// the tangent plane counts.
+    /// The velocity that friction gives B's surface relative to A's, in world axes, m/s. Only its tangential
+    /// part counts.
     pub velocity: Vector,
 }
 
@@ -177,7 +176,7 @@ pub struct ManifoldSurface {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LostImpulse {
     pub(super) contact: u32,
-    /// Its number among those of the contact.
+    /// The number of the point in the contact.
     pub(super) number: u32,
     /// The collider that slides.
     pub(super) collider: u32,
@@ -188,12 +187,12 @@ pub(super) struct LostImpulse {
     pub(super) impulse: f32,
 }
 
-/// Manifolds of a sliding collider that are parallel: normals lie around that of the first, by less than half
-/// of what counts.
+/// Parallel manifolds of a sliding collider. Normals differ from the first normal by less than half of the
+/// tolerance.
 #[derive(Clone, Debug)]
 pub(super) struct Parallel {
     pub(super) normal: Vector,
-    /// The largest distance of a normal from that of the first.
+    /// The largest distance of a normal from the first normal.
     pub(super) spread: f32,
     /// The manifolds in the list of all, the highest planes first.
     pub(super) range: core::ops::Range<usize>,
@@ -207,7 +206,7 @@ pub(super) struct LoadPoint {
     pub(super) index: u32,
     /// The number of the point in the manifold.
     pub(super) point: u32,
-    /// Its number among those of the collider.
+    /// The number of the point in the collider's list.
     pub(super) order: u32,
     /// From the centre of mass of the collider's body.
     pub(super) place: Vector,
@@ -215,7 +214,7 @@ pub(super) struct LoadPoint {
     pub(super) normal: Vector,
 }
 
-/// A manifold of a moving collider with what it slides over.
+/// A manifold between a moving collider and the ground that it slides over.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sliding {
     pub(super) contact: u32,
@@ -231,13 +230,13 @@ pub(super) struct Sliding {
     pub(super) is_round: bool,
     /// Whether it has more than two points.
     pub(super) is_face: bool,
-    /// From its first to its second point, of length 1, if a shape is round; 0 for one point.
+    /// Unit vector from the first to the second of two points, if a shape is round; otherwise 0.
     pub(super) line: Vector,
-    /// Whether the manifold is marked.
+    /// Whether the manifold is marked as internal.
     pub(super) is_marked: bool,
     /// The number of its group of parallel manifolds.
     pub(super) group: u32,
-    /// How high its plane is along its normal. Known if there are several groups.
+    /// Height of its plane along its normal; set only with several groups.
     pub(super) height: f32,
 }
 
@@ -248,8 +247,8 @@ pub struct Frozen {
     pub rotations: [Rot; 2],
     /// From A's to B's centre of mass.
     pub offset: Vector,
-    /// The distance up to which points were looked for. If there are none, a lower bound of the distance
-    /// between the shapes. Margins are subtracted; in metres.
+    /// Distance up to which points were searched. Without points, a lower bound of the distance between the
+    /// shapes. Margins are subtracted; in metres.
     pub prediction: f32,
 }
 
@@ -277,7 +276,7 @@ pub struct Contact {
     pub frozen: Frozen,
     /// The last separating axis or reference feature.
     pub cache: FeatureCache,
-    /// The first manifold, the only one of convex shapes.
+    /// The first manifold; convex shapes have no other.
     pub manifold: Manifold,
     /// The mixed coefficients of friction and restitution.
     pub surface: [f32; 2],

@@ -1,4 +1,4 @@
-//! Recycling, of several contacts side by side.
+//! Recycling of manifolds, several contacts side by side.
 //!
 //! Recycling is Erin Catto's (Box2D v3.2, Box3D; both ask to be cited for it). While two bodies have hardly
 //! moved relative to each other since their manifold was computed, its normal, anchors and features are kept,
@@ -33,7 +33,7 @@ const PLATFORM_B: f32 = 2.0;
 /// [`RECYCLE_COS`].
 pub(crate) const CHORD: f32 = 1.016;
 
-/// What recycling reads of a contact, or of several side by side: the numbers are in the same order.
+/// The numbers of a contact that recycling reads, or of several contacts side by side in the same order.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 struct RecycleRow<N: Num = f32> {
@@ -55,7 +55,7 @@ struct RecycleRow<N: Num = f32> {
     count: N,
     /// [`PLATFORM_A`], [`PLATFORM_B`] or [`NO_PLATFORM`].
     platform: N,
-    /// The speed of B against A. Unset if the manifold has [`MAX_POINTS`].
+    /// The speed of B relative to A. Unset if the manifold has [`MAX_POINTS`].
     speed: N,
     /// The angular velocities. Unset if the manifold has [`MAX_POINTS`].
     angular: [Angular<N>; 2],
@@ -109,7 +109,7 @@ impl<N: Lane> RecycleRow<N> {
     }
 }
 
-/// What is the same for all contacts; as in [`NarrowPhaseInput`].
+/// Settings common to all contacts, as in [`NarrowPhaseInput`].
 #[derive(Clone, Copy)]
 struct Settings {
     dt: f32,
@@ -129,7 +129,7 @@ pub(super) struct RecycleBatch {
     turned: u32,
     /// The present separations of each contact's points.
     separations: [Quad; Self::SIZE],
-    /// How far the surfaces of each contact may move, if nothing closes, and how far they have.
+    /// How far the surfaces of each contact may move, if nothing closes, and how far they have moved.
     ways: [[f32; 2]; Self::SIZE],
 }
 
@@ -157,7 +157,7 @@ impl RecycleBatch {
     pub(super) fn push(&mut self, id: u32, contact: &Contact, sides: &Sides) -> bool {
         let (&Sides { input, poses, .. }, reaches) = (sides, sides.reaches());
         let frozen = &contact.frozen;
-        // The sum of both speeds bounds the closing speed. So velocities are read of fast bodies only.
+        // The sum of both speeds bounds the closing speed. So velocities are read only for fast bodies.
         let fastest = (poses[0].speed + poses[1].speed) * input.dt;
         if !contact.flags.has(ContactFlags::FROZEN)
             || !(input.recycle_distance > 0.0)
@@ -188,7 +188,7 @@ impl RecycleBatch {
             row.angular = [a.angular, b.angular];
             let turns = row.angular != [Angular::ZERO; 2];
             if m.count > 0 && (turns || contact.flags.has(ContactFlags::COMPOSITE)) {
-                // No number of points tells that others are far.
+                // Even a full manifold may lack points that are near.
                 row.count = 1.0;
             }
         }
@@ -205,16 +205,16 @@ impl RecycleBatch {
         self.evaluate_at(&Settings { dt, tolerance, recycle_distance }, Width::of(input.narrow));
     }
 
-    /// How far the surfaces of a contact may move against each other until its manifold is to be computed
-    /// anew, if they do not close within a step, and how far they have. `place` is the contact's index in the
-    /// batch, which was evaluated.
+    /// How far the surfaces of a contact may move against each other before its manifold must be recomputed,
+    /// if they do not close within a step, and how far they have moved. `place` is the contact's index in the
+    /// evaluated batch.
     #[inline(always)]
     pub(super) fn ways(&self, place: usize) -> [f32; 2] {
         self.ways[place]
     }
 
-    /// Lets a contact that keeps its manifold follow the motion of its bodies; `false` if it does not keep
-    /// it. `place` is the contact's index in the batch, which was evaluated.
+    /// Updates a contact that keeps its manifold to the motion of its bodies; `false` if the manifold is not
+    /// kept. `place` is the contact's index in the evaluated batch.
     #[inline(always)]
     pub(super) fn apply(&self, place: usize, contact: &mut Contact, extra: &mut [Manifold]) -> bool {
         let is_kept = self.kept & 1 << place != 0;
@@ -273,7 +273,7 @@ impl RecycleBatch {
     }
 }
 
-/// Gives the points of a manifold their present separations.
+/// Stores the present separations in the points of a manifold.
 #[inline(always)]
 fn follow(m: &mut Manifold, separations: [f32; 4]) {
     for (p, separation) in m.points[..usize::from(m.count)].iter_mut().zip(separations) {
@@ -295,11 +295,11 @@ impl RecycleRow {
 
 impl<N: Lane> RecycleRow<N> {
     /// Whether the bodies moved little enough against each other. Also how far their surfaces may move while
-    /// nothing closes, and how far they have.
+    /// nothing closes, and how far they have moved.
     ///
-    /// No point of one surface moved further against the other than `moved`. So shapes that were
-    /// `prediction` apart are still `prediction - moved` apart, and keep that they have no points until the
-    /// rest may close in the step.
+    /// No point of one surface moved farther against the other than `moved`. So shapes that were `prediction`
+    /// apart are still `prediction - moved` apart, and stay without points until the remaining gap may close
+    /// in the step.
     #[inline(always)]
     fn is_kept(&self, settings: &Settings) -> (N::Mask, [N; 2]) {
         let &Self { offset, prediction, count, extents, turning, .. } = self;
@@ -309,8 +309,8 @@ impl<N: Lane> RecycleRow<N> {
         let is_straight = N::and(straight.le(turns[0].cos_angle()), straight.le(turns[1].cos_angle()));
         // `moved` is the shift of one centre of mass in the frame of the other, plus the angle between both
         // turns times a reach. The shifting body is B, but A if B is static: a static body may be large or a
-        // half-space. The reach is at least that of either moving body, so that normals and anchors stay
-        // valid on the larger one.
+        // half-space. The reach is at least the reach of either moving body, so that normals and anchors stay
+        // valid on the larger body.
         let is_a = N::and(turning[1].eq(N::ZERO), N::ZERO.lt(extents[0]));
         let frame = Rot::select(is_a, turns[1], turns[0]);
         let reach = N::select(is_a, extents[0], extents[1]).max(turning[0].max(turning[1]));
@@ -319,7 +319,7 @@ impl<N: Lane> RecycleRow<N> {
         let moved = shift.length() + N::splat(CHORD) * reach * angle.length();
 
         let closing = self.closing(N::splat(settings.dt));
-        // The tolerance is for what forces add to the velocities within the step.
+        // The tolerance covers the velocities that forces add within the step.
         let without_points = prediction - (closing + N::splat(settings.tolerance));
         let errors = N::splat(settings.recycle_distance).min(N::splat(RECYCLE_SHARE) * smaller(extents));
         let radius = self.radii[0] + self.radii[1];
@@ -330,8 +330,8 @@ impl<N: Lane> RecycleRow<N> {
             curved = N::select(is_flat, curved.min(extent * extent / radius), curved);
         }
         let errors = N::select(is_round, errors.min(curved * N::splat(KEPT)), errors);
-        // A manifold that is not complete may lack points that were too far apart. None of these may close
-        // in this step.
+        // A manifold that is not full may lack points that were too far apart. No missing point may close in
+        // this step.
         let is_full = count.eq(N::splat(MAX_POINTS as f32));
         let with_points = N::select(is_full, errors, errors.min(prediction - closing));
         let allowed = N::select(count.eq(N::ZERO), without_points, with_points);
@@ -390,8 +390,8 @@ impl<N: Lane> RecycleRow<N> {
         let normal = self.normal;
         let along = (self.change() + frame.unturn(self.offset_now)).dot(normal);
         let cores = [normal * self.radii[0], self.offset - normal * self.radii[1]];
-        // n · (Q r − r) = (Q⁻¹ n − n) · r, of which only r differs from point to point. Without `map`: a
-        // closure that is not inlined here makes a call of each lane operation.
+        // n · (Q r − r) = (Q⁻¹ n − n) · r, where only r differs from point to point. Without `map`: a closure
+        // that is not inlined here makes a call of each lane operation.
         let [turn_a, turn_b] = self.turns();
         let back = frame.inverse();
         let leans = [back.mul(turn_a).unturn(normal), back.mul(turn_b).unturn(normal)];
@@ -416,8 +416,8 @@ fn platform(flags: ContactFlags) -> f32 {
     }
 }
 
-/// Turns the frozen pose of a contact and its manifolds with the platform. `rotations` are the present ones
-/// of both bodies.
+/// Turns the frozen pose of a contact and its manifolds with the platform. `rotations` are the present
+/// rotations of both bodies.
 #[inline(never)]
 fn turn(contact: &mut Contact, extra: &mut [Manifold], rotations: [Rot; 2]) {
     let own = usize::from(contact.flags.has(ContactFlags::PLATFORM_B));
@@ -507,8 +507,8 @@ mod tests {
     }
 
     proptest! {
-        /// Results are the same bits with any width, whatever else is in the batch and was in
-        /// the rows before.
+        /// Results are bit-identical with any width, other rows in the batch, and previous content of unused
+        /// rows.
         #[test]
         fn side_by_side_is_as_alone(rows in prop::collection::vec(row(), 1..=RecycleBatch::SIZE), dirt in row()) {
             for width in [Width::default(), Width::Four] {

@@ -1,5 +1,5 @@
-//! Waking and carried islands, against brute force and by the number of visited bodies. The table does not
-//! depend on the workers that updated it.
+//! Tests of waking and carried islands, against brute force and by the number of visited bodies, and of a
+//! table that does not depend on the number of workers.
 
 use super::*;
 use crate::data::BitSet;
@@ -11,7 +11,7 @@ use crate::table::{BodyKind, BodyTable, ColliderDef, ColliderTable, Fattening};
 use crate::thread_pool::ThreadPool;
 use proptest::prelude::*;
 
-/// The tables, without anything that moves.
+/// The tables, without a simulation.
 #[derive(Default)]
 struct World {
     bodies: BodyTable,
@@ -22,7 +22,7 @@ struct World {
 }
 
 impl World {
-    /// Bodies of one collider each, with the same id.
+    /// Bodies with one collider each; body and collider have the same id.
     fn with(kinds: impl IntoIterator<Item = BodyKind>) -> Self {
         Self::of(&Shape::Ball(Ball { radius: 1.0 }), kinds)
     }
@@ -60,7 +60,7 @@ impl World {
         }
     }
 
-    /// Lets two bodies begin to touch, or end it if they do.
+    /// Toggles whether two bodies touch.
     fn touch(&mut self, a: u32, b: u32) {
         let id = self.contacts.find(a, b).unwrap_or_else(|| self.contact_manager().create(a, b));
         let flags = &mut self.contacts.get_mut(id).flags;
@@ -146,7 +146,7 @@ fn removing_all_of_a_heap_looks_at_each_body_a_few_times() {
     }
 }
 
-/// The same for bodies, whose links were searched in the whole heap.
+/// Removing the bodies searched their links in the whole heap.
 #[test]
 fn despawning_all_of_a_heap_looks_at_each_body_a_few_times() {
     for count in [100, 1_000, 10_000] {
@@ -209,7 +209,8 @@ fn a_woken_island_rests_anew_before_it_sleeps() {
     world.contact_manager().validate();
 }
 
-/// A mark of a small island holds for the large one it merges with, and for both parts after a split.
+/// The mark of a small island also holds for the large island that it merges with, and for both parts after a
+/// split.
 #[test]
 fn a_woken_body_rests_anew_in_whatever_island_it_comes_to() {
     let mut world = World::with([BodyKind::Dynamic; 6]);
@@ -333,7 +334,7 @@ const KINDS: [BodyKind; 3] = [BodyKind::Static, BodyKind::Kinematic, BodyKind::D
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
 
-    /// With contacts, lifts that start and stop, changes of kind, splits, sleep and removal.
+    /// Random contacts, lifts that start and stop, changes of kind, splits, sleep and removal.
     #[test]
     fn islands_know_what_carries_them(
         kinds in prop::collection::vec(prop::sample::select(vec![KINDS[0], KINDS[1], KINDS[2], KINDS[2]]), 4..30),

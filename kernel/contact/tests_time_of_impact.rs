@@ -1,4 +1,4 @@
-//! How long shapes surely take to meet, against where they are at many times.
+//! Tests the lower bound of the time of impact against the distance at many times.
 
 use super::{Motion, Placed, Slab};
 use crate::math::{Angular, Pose, Rot, Vector, WorldPose, max, min};
@@ -9,7 +9,7 @@ use crate::table::{BodyPose, Reach};
 use crate::tuning::sweeps::MOST_TURN;
 use proptest::prelude::*;
 
-/// A body with one shape, whose frame is the body's.
+/// A body with one shape in the body's frame.
 #[derive(Debug)]
 struct Body {
     frame: Pose,

@@ -1,10 +1,11 @@
-//! Contacts of a later time in the step: of shapes that will meet, and of round ones that rock on each other.
+//! Contacts at a later time of the step: of shapes that will meet, and of round shapes that rock on each
+//! other.
 //!
-//! The plane at the present closest points is no wall: what passes by would be stopped by it, and a point far
-//! out on a turning body moves along an arc. So the pair is followed to when it meets ([conservative
-//! advancement](advance)). The solver gets the contact of that time, with separations that bring it there. A
-//! pair that does not meet has none. Round bodies that rock get the contact of the middle of the step; see
-//! [`midstep_contact`].
+//! The plane at the present closest points is no wall: it would stop a body that passes by, and a point far
+//! out on a turning body moves along an arc. So the pair is advanced to its time of impact ([conservative
+//! advancement](advance)). The solver gets the contact at this time, with separations that lead the bodies
+//! there. A pair that does not meet has no contact. Round bodies that rock get the contact in the middle of
+//! the step; see [`midstep_contact`].
 
 #[cfg(test)]
 #[path = "tests_time_of_impact.rs"]
@@ -21,13 +22,13 @@ use crate::tuning::contact::{MOST_WAY, SAME_FACE, STILL};
 use crate::tuning::solver::SMALL_TURN;
 use crate::tuning::sweeps::{AHEAD, CHORDS, LAG, MEETING_ROUNDS, MET, MOST_TURN};
 
-/// The poses at a time within the step: when the shapes meet, or in its middle.
+/// The poses at a time within the step: at the time of impact or in the middle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
     pub(super) placed: [Placed; 2],
     /// From A's to B's centre of mass.
     pub(super) offset: Vector,
-    /// How far B's centre of mass shifts against A's until then.
+    /// Shift of B's centre of mass relative to A's until this time.
     shift: Vector,
 }
 
@@ -35,14 +36,13 @@ pub(super) struct Meeting {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub(super) body: BodyPose,
-    /// How far the body turns until then.
+    /// Rotation of the body until this time.
     turn: Rot,
     pub(super) shape: WorldPose,
 }
 
-/// Follows two native shapes, `gap` apart without margins, to the time when they meet in this step.
-/// `local` has their present points, if there are any within `prediction`, and receives those of that
-/// time, else none.
+/// Advances two native shapes, `gap` apart without margins, to their time of impact in this step. `local`
+/// holds their present points within `prediction`, and receives the points at the time of impact, or none.
 #[inline(never)]
 pub(super) fn find_meeting(
     sides: &Sides,
@@ -74,13 +74,13 @@ pub(super) fn find_meeting(
     };
     let first = apart_until(&placed, local, gap, 0.0);
     let meeting = advance(first, MEETING_ROUNDS, |time, round| {
-        // A NaN ends it as well.
+        // A NaN ends the advance too.
         if !(time >= 0.0 && time < end) {
             return None;
         }
         let placed = place_at(sides, time);
         let relative = placed[0].shape.relative(&placed[1].shape);
-        // What is farther away than the rest of the motion does not meet.
+        // Shapes farther apart than the remaining motion do not meet.
         let rest = max(farthest * (1.0 - time / sides.input.dt), sides.near()) + margin;
         manifold::collide(shapes[0], shapes[1], &relative, rest, &mut contact.cache, local);
         let gap = local.lower_bound() - margin;
@@ -115,8 +115,8 @@ pub(super) fn met_at(sides: &Sides) -> f32 {
     MET * Motion::new(sides).met
 }
 
-/// Whether the bodies turn little in this step. The solver keeps the arms of the step's start. What turns
-/// farther gains energy if it is pushed where it comes to.
+/// Whether the bodies turn little in this step. The solver keeps the arms of the step's start. A body that
+/// turns farther gains energy if it is pushed at its later position.
 pub(super) fn is_straight(sides: &Sides) -> bool {
     sides.reaches().into_iter().enumerate().all(|(side, reach)| {
         reach.arm == 0.0 || sides.velocity(side).angular.length() * sides.input.dt < 0.5 * MOST_TURN
@@ -138,12 +138,12 @@ pub(super) fn pushes(sides: &Sides, local: &LocalManifold) -> bool {
     })
 }
 
-/// Moves the only point of `local`, with a round surface that presses another body, to where it is in the
-/// middle of the step, up to `prediction` apart. Leaves all other points as they are.
+/// Moves the single point of `local`, where a round surface presses another body, to its position in the
+/// middle of the step, up to `prediction` apart. Leaves all other manifolds unchanged.
 ///
-/// The solver keeps normals and arms for a step. The point where a round body rocks on another runs along
-/// both, and an arm that lags behind it feeds the rocking like a negative damper: a light body between heavy
-/// ones never came to rest.
+/// The solver keeps normals and arms for a step. The contact point of a rocking round body runs along both
+/// surfaces. An arm that lags behind this point feeds the rocking like a negative damper: a light body
+/// between heavy bodies never came to rest.
 pub(super) fn midstep_contact(
     sides: &Sides,
     contact: &mut Contact,
@@ -218,7 +218,8 @@ impl<'a> Motion<'a> {
         self.linear.length() + self.turning(offset)
     }
 
-    /// The same along a normal from A to B: the slab between the shapes is not crossed sooner.
+    /// An upper bound of the closing speed along a normal from A to B: the slab between the shapes is not
+    /// crossed sooner.
     fn closing(&self, normal: Vector, offset: Vector) -> f32 {
         self.turning(offset) - self.linear.dot(normal)
     }
@@ -234,12 +235,13 @@ struct Slab<'a> {
     margin: f32,
 }
 
-/// The slab between two shapes as one body sees it: its normal turns with that body, whose face may make it.
+/// The slab between two shapes in the frame of one body: its normal turns with this body, whose face may
+/// define it.
 struct View<'a> {
     slab: &'a Slab<'a>,
     /// The side that moves in this view.
     moving: usize,
-    /// From the moving shape to the other one.
+    /// From the moving shape to the other shape.
     normal: Vector,
     /// The slab's width now.
     width: f32,
@@ -253,12 +255,12 @@ struct View<'a> {
 }
 
 impl<'a> Slab<'a> {
-    /// How long the shapes take at least until the slab between them, `gap` wide along a normal from A to B,
-    /// is half as wide as what counts as having met; infinite if they take longer than `end`.
+    /// A lower bound of the time until the slab between the shapes, `gap` wide along a normal from A to B,
+    /// narrows to half of the distance that counts as having met; infinite beyond `end`.
     fn time_to_cross(&self, normal: Vector, gap: f32, end: f32) -> f32 {
         let goal = 0.5 * self.motion.met;
         let rate = self.motion.closing(normal, self.offset);
-        // A smallest step, so that the advance does not slow down without end.
+        // A minimum step, so that the advance does not slow down without end.
         let least = if rate > 0.0 { goal / rate } else { f32::INFINITY };
         let coarse = max(gap / rate, least);
         let Some(views) = self.views(normal, end) else { return coarse };
@@ -268,14 +270,14 @@ impl<'a> Slab<'a> {
         }
         let last = [views[0].width_after(end), views[1].width_after(end)];
         let better = usize::from(last[1] > last[0]);
-        // Speeds near the limits of floats have no square.
+        // Speeds near the limits of floats have no finite square.
         if !last[better].is_finite() {
             return coarse;
         }
         max(views[better].time_to(goal, end, last[better]), least)
     }
 
-    /// The views of both bodies; `None` if a shape has no farthest points.
+    /// The views of both bodies; `None` if a shape has no support point.
     fn views(&'a self, normal: Vector, end: f32) -> Option<[View<'a>; 2]> {
         let heights = [self.height(0, normal)?, self.height(1, -normal)?];
         let Motion { linear, angular, spins, reaches, .. } = self.motion;
@@ -325,10 +327,11 @@ impl View<'_> {
         self.width - closed
     }
 
-    /// A lower bound of the time until the width falls to `goal`; infinite if it does not by the `end`, when
-    /// it is `last`.
+    /// A lower bound of the time until the width falls to `goal`; infinite if it stays above `goal` until
+    /// `end`. `last` is the width at `end`.
     ///
-    /// The width's bound is concave over time. So a chord of it is below it, and is no later at the goal.
+    /// The bound of the width is concave over time. So a chord lies below the bound, and reaches the goal no
+    /// later.
     fn time_to(&self, goal: f32, end: f32, last: f32) -> f32 {
         if last >= goal {
             return f32::INFINITY;
@@ -369,14 +372,14 @@ impl Placed {
 }
 
 impl Meeting {
-    /// From both sides at that time, and the poses of their bodies at the step's start.
+    /// From both sides at the meeting, and the poses of their bodies at the step's start.
     fn new(placed: [Placed; 2], sides: &Sides) -> Self {
         let offset = (placed[1].body.center - placed[0].body.center).to_local();
         Self { placed, offset, shift: offset - sides.offset() }
     }
 
-    /// Changes the separations of a manifold to those at the step's start. The solver moves the bodies with
-    /// these arms, and so reaches the given separations at that time.
+    /// Converts the separations of a manifold to the step's start. The solver moves the bodies with these
+    /// arms, and so reaches the given separations at the meeting.
     pub(super) fn rewind(&self, m: &mut Manifold) {
         let n = m.normal;
         let cores = [n * m.radii[0], self.offset - n * m.radii[1]];

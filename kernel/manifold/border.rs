@@ -1,4 +1,4 @@
-//! Which borders of a facet a contact is on, and where the surface goes on behind them.
+//! Which borders of a facet a contact is on, and how the surface continues behind them.
 
 use super::LocalManifold;
 use crate::math::Vector;
@@ -6,13 +6,13 @@ use crate::tuning::manifold::{MARGIN, ON_BORDER, SIDEWAYS};
 
 /// One side of a triangle, or one end of a segment.
 pub(super) struct Border {
-    /// Where it begins.
+    /// The corner where the border begins.
     pub corner: Vector,
     /// Its unit direction; 0 for a point.
     pub along: Vector,
     /// The unit direction out of the facet, in its plane.
     pub outward: Vector,
-    /// How far the facet reaches from it, in metres.
+    /// The extent of the facet from this border, in metres.
     pub depth: f32,
 }
 
@@ -22,7 +22,7 @@ pub(super) fn is_beside(borders: &[Border], point: Vector) -> bool {
 }
 
 impl Border {
-    /// Whether all points of a manifold are on the facet's border, but for those where it rises.
+    /// Whether all points of a manifold are on this border, except points that rise above the deepest point.
     pub(super) fn is_met_by(&self, local: &LocalManifold) -> bool {
         let deepest = local.points().iter().min_by(|p, q| p.separation.total_cmp(&q.separation));
         let Some(deepest) = deepest else { return true };

@@ -1,5 +1,5 @@
-//! Contact manifolds of composite shapes: part by part, merged into few. Closed convex surfaces are the
-//! solids that they bound.
+//! Contact manifolds of composite shapes: part by part, merged into few. A closed convex surface collides as
+//! the solid that it bounds.
 
 use super::dim::{Convex, face_normal, with_convex};
 use super::merge::{Merging, merge};
@@ -13,7 +13,7 @@ use core::cell::Cell;
 /// Buffers for the manifolds of composite shapes, kept between calls.
 #[derive(Clone, Debug, Default)]
 pub struct CompositeBuffers {
-    /// That of the pair, where a surface counts as one solid; see [`collide`](super::collide).
+    /// The cache of the pair, where a surface counts as one solid; see [`collide`](super::collide).
     pub cache: FeatureCache,
     parts: PartBuffers,
     merging: Merging,
@@ -26,7 +26,7 @@ impl CompositeBuffers {
     }
 }
 
-/// Adds the manifolds of two shapes of which at least one is composite, in A's frame; see
+/// Adds the manifolds of a pair with at least one composite shape, in A's frame; see
 /// [`collide`](super::collide). Returns a lower bound of the distance between the shapes: infinite if no part
 /// is near, 0 if there are points.
 pub fn collide_composite(
@@ -46,8 +46,8 @@ pub fn collide_composite(
     if buffers.parts.found.is_empty() { gap } else { 0.0 }
 }
 
-/// Adds the manifolds of all parts, each as if it were alone, in A's frame: of those within the prediction,
-/// and of those that the motion may meet. Their normals and separations are slabs between convex shapes.
+/// Adds the manifolds of all parts in A's frame, each part on its own: of parts within the prediction, and of
+/// parts that the motion may meet. Each normal and separation is the slab between two convex shapes.
 pub fn collide_each_part(
     a: &Shape,
     b: &Shape,
@@ -61,7 +61,8 @@ pub fn collide_each_part(
     out.extend_from_slice(&buffers.parts.found);
 }
 
-/// Fills `buffers.found` with the manifolds of parts. Returns a lower bound of the distance to parts without.
+/// Fills `buffers.found` with the manifolds of parts. Returns a lower bound of the distance to parts without
+/// a manifold.
 fn collide_parts(
     [a, b]: [&Shape; 2],
     pose_b_in_a: &Pose,
@@ -78,7 +79,7 @@ fn collide_parts(
     let pose_a_in_b = pose_b_in_a.inverse();
     let of_a = forms([a, b], pose_b_in_a, query, 0, alone);
     let of_b = forms([b, a], &pose_a_in_b, query, 1, alone);
-    // A composite first, of two the larger one.
+    // The composite comes first; of two composites, the larger.
     let is_b = match (of_a, of_b) {
         ((_, None), (_, None)) => !(a.ball_around().1 >= b.ball_around().1),
         ((parts, _), (_, whole)) => parts.is_none() || whole.is_none(),
@@ -109,9 +110,9 @@ fn collide_parts(
     gap
 }
 
-/// The parts of the first of two shapes, if it is composite, and the convex shape that it is, if it is one. A
-/// closed convex surface is both, as the solid that it bounds. Not if the other shape is inside, nor if its
-/// facets have materials of their own.
+/// The first shape as a composite and as a convex shape, where it is one. A closed convex surface is both: it
+/// counts as the solid that it bounds, unless the other shape is inside or its facets have materials of their
+/// own.
 fn forms<'a>(
     [shape, other]: [&'a Shape; 2],
     pose: &Pose,
@@ -129,7 +130,7 @@ fn forms<'a>(
         let Shape::Hull(hull) = part else { return false };
         let around = other.local_box(pose);
         let (center, half) = (around.center(), around.half());
-        // What does not move may be a room. The centre of what is in it stays there.
+        // A shape that does not move may be a room. A shape inside keeps its centre inside.
         let deep = if query.ground[side] { 0.0 } else { CORE_SHARE };
         !hull.contains(center, |normal| deep * normal.abs().dot(half))
     };
@@ -139,7 +140,7 @@ fn forms<'a>(
     }
 }
 
-/// Calls `f` with a shape that is to be collided with the parts of a composite.
+/// Calls `f` with a shape to collide with the parts of a composite.
 fn with_other<R>(composite: &Composite<Shape>, other: &Shape, f: impl FnOnce(&Convex) -> R) -> R {
     match composite.surface() {
         Some(_) => with_convex(other, f),
@@ -147,8 +148,8 @@ fn with_other<R>(composite: &Composite<Shape>, other: &Shape, f: impl FnOnce(&Co
     }
 }
 
-/// Two composites: each part of the second that is near the first against all of the first. The first is the
-/// larger one: the other cannot enclose it, and so what it bounds, if it is closed, is solid to it.
+/// Collides two composites: each near part of the smaller against the whole larger composite. The smaller
+/// cannot enclose the larger, so a closed smaller surface is solid to the larger.
 fn collide_both(
     [large, small]: [&Composite<Shape>; 2],
     pose: &Pose,
@@ -162,7 +163,7 @@ fn collide_both(
     let near = Aabb { min: around.min + inverse.position, max: around.max + inverse.position };
     let mut parts = Vec::new();
     small.tree().query(&near.grown(query.prediction + query.motion.length()), |part| parts.push(part));
-    // Parts that are not near are beyond what was looked at.
+    // Parts that are not near are beyond the search distance.
     let beyond =
         if parts.len() < small.len() { query.prediction + query.motion.length() } else { f32::INFINITY };
     let closed_surface = |part: u32| {

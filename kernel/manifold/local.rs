@@ -9,17 +9,17 @@ pub struct LocalPoint {
     pub point: Vector,
     /// The distance between the surfaces along the normal; negative where they overlap.
     pub separation: f32,
-    /// The features of both shapes that make this point; equal in the next step if the features are.
+    /// Id of the features of both shapes at this point; equal in the next step if the features are equal.
     pub feature: u32,
-    /// How far [`ManifoldQuery::motion`](super::ManifoldQuery::motion) closes the shapes along the normal
-    /// until they meet here, in metres; 0 if they are near now. If not 0, the point is where they meet, moved
-    /// back with the shape that moves. If both do, with that which is not composite, or with B, and half of
-    /// the distance above it.
+    /// The distance by which [`ManifoldQuery::motion`](super::ManifoldQuery::motion) closes the shapes along
+    /// the normal until they meet here, in metres; 0 if they are near now. If not 0, the point is the meeting
+    /// point, moved back with the moving shape. If both shapes move, it moves back with the shape that is not
+    /// composite, or with B, and lies half of the distance above this shape.
     pub closing: f32,
 }
 
 impl LocalPoint {
-    /// A point of shapes that are near now.
+    /// A point of shapes that are near at the present pose.
     pub fn new(point: Vector, separation: f32, feature: u32) -> Self {
         Self { point, separation, feature, closing: 0.0 }
     }
@@ -36,11 +36,10 @@ pub struct LocalManifold {
     pub count: usize,
     /// A lower bound of the distance of shapes without points, in metres; 0 if it is not known.
     pub gap: f32,
-    /// How far the core that each surface turns about is behind it, in metres: a centre, an axis, a centre
-    /// of curvature.
+    /// The depth of each surface's core (centre, axis, centre of curvature) behind the surface, in metres.
     pub radii: [f32; 2],
-    /// The groups of the facets of A and B, see
-    /// [`ManifoldQuery::groups`](super::ManifoldQuery::groups); 0 without.
+    /// The groups of the facets of A and B, see [`ManifoldQuery::groups`](super::ManifoldQuery::groups); 0
+    /// without groups.
     pub groups: [u8; 2],
 }
 
@@ -63,8 +62,8 @@ impl LocalManifold {
         }
     }
 
-    /// Puts points of shapes that meet later onto the shape that moves, if the other one is ground: its arms
-    /// are exact then.
+    /// Moves points that are met later onto the moving shape, if the other shape is ground. This makes the
+    /// moving shape's arms exact.
     pub(super) fn place_on_mover(&mut self, ground: [bool; 2]) {
         let side = match ground {
             [true, false] => 1.0,
@@ -76,7 +75,7 @@ impl LocalManifold {
         self.points[..count].iter_mut().for_each(|p| p.point += half * p.closing);
     }
 
-    /// Adds a point of shapes that are near now.
+    /// Adds a point of shapes that are near at the present pose.
     pub fn push(&mut self, point: Vector, separation: f32, feature: u32) {
         self.add(LocalPoint::new(point, separation, feature));
     }
@@ -90,8 +89,8 @@ impl LocalManifold {
         }
     }
 
-    /// The same contact seen from shape B: `pose` is that of B in A's frame, which this manifold is in.
-    /// The result is in B's frame with the normal from B to A.
+    /// The same contact in B's frame, with the normal from B to A. This manifold is in A's frame; `pose` is
+    /// B's pose there.
     pub fn flipped(&self, pose: &Pose) -> Self {
         let mut out = *self;
         out.normal = pose.rotation.inverse_rotate(-self.normal);

@@ -1,4 +1,4 @@
-//! Manifolds of parts that hold the same, merged into few.
+//! Merges manifolds of parts with the same normal into few.
 
 use super::dim::few_points;
 use super::{LocalManifold, LocalPoint};
@@ -8,7 +8,7 @@ use crate::tuning::manifold::{ALIKE, SAME, SAME_NORMAL};
 /// Buffers, kept between calls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Merging {
-    /// For each manifold the merged one it belongs to.
+    /// For each manifold, the index of its merged manifold.
     groups: Vec<usize>,
     points: Vec<LocalPoint>,
 }
@@ -53,7 +53,7 @@ pub(super) fn merge(found: &mut [LocalManifold], room: &mut Merging, out: &mut V
     }
 }
 
-/// Drops points in the place of an earlier one.
+/// Merges points at the same place: the deeper point stays.
 fn drop_twins(points: &mut Vec<LocalPoint>) {
     let first = points[0].point;
     let spread = points.iter().fold(0.0, |far, p| max(far, (p.point - first).length_squared()));

@@ -1,9 +1,9 @@
 //! Contact manifolds: points with feature ids, from two shapes and their relative pose.
 //!
-//! There is one function without allocations per pair of native shapes. All of them work in the frame of
-//! shape A, with the normal from A to B; the narrow phase transforms the result to the world. Points lie
-//! midway between the two surfaces. Points have separations up to the prediction distance; those with a
-//! positive separation are speculative contacts.
+//! Each pair of native shapes has one function without allocations. All functions work in the frame of shape
+//! A, with the normal from A to B; the narrow phase transforms the result to the world. Points lie midway
+//! between the two surfaces. Points have separations up to the prediction distance; points with a positive
+//! separation are speculative contacts.
 
 mod border;
 mod composite;

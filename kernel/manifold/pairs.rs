@@ -1,4 +1,5 @@
-//! The contact of two convex shapes: what all pairs share. The function of each pair is in `dim2` and `dim3`.
+//! The contact of two convex shapes: the code common to all pairs. The function of each pair is in `dim2` and
+//! `dim3`.
 
 use super::{FeatureCache, LocalManifold, PairInput, dim};
 use crate::math::{Pose, Vector};
@@ -8,16 +9,16 @@ use core::cell::Cell;
 /// Centres farther apart than this, in metres, have no contact: their squares would overflow.
 pub(super) const FARTHEST: f32 = 1.0e15;
 
-/// The contact of two shapes, `pose_b_in_a` being where B is in A's frame; the result is in A's frame.
+/// The contact of two shapes, in A's frame. `pose_b_in_a` is B's pose in A's frame.
 ///
 /// `out` gets the points no farther apart than `prediction` metres. It has none if a pose or size is not
 /// finite, and for two half-spaces, [composites](crate::shape::Composite) and foreign shapes. The normal of
-/// overlapping shapes is that of the least penetration, or that of a face with somewhat more. Segments and
-/// triangles are two-sided.
+/// overlapping shapes is the direction of least penetration, or the normal of a face with slightly more.
+/// Segments and triangles are two-sided.
 ///
-/// `cache` is that of the same pair in the same order from the step before, or [`FeatureCache::NONE`].
-/// The cached axis is tested first, and kept while it is as good as any other, so that resting
-/// contacts do not flip.
+/// `cache` is the cache of the same pair in the same order from the previous step, or [`FeatureCache::NONE`].
+/// The cached axis is tested first, and kept while it is as good as any other, so that resting contacts do
+/// not flip.
 pub fn collide(
     a: &Shape,
     b: &Shape,
@@ -57,7 +58,7 @@ pub(super) fn is_near(pose: &Pose) -> bool {
     pose.position.abs().max_element() < FARTHEST && pose.rotation.is_finite()
 }
 
-/// Drops a contact whose numbers overflowed, as they do with sizes out of all proportion.
+/// Drops a contact whose numbers overflowed, as with extreme ratios of sizes.
 #[inline]
 pub(super) fn drop_unusable(out: &mut LocalManifold) {
     if out.count == 0 {

@@ -1,8 +1,8 @@
 //! The parts of a composite shape that are near one convex shape, each with its contact.
 //!
-//! A facet alone ends at its borders, the surface does not. So a normal that leans over a border towards the
-//! neighbour is replaced by the facet's own: there the neighbour is nearer (convex edges keep the normals
-//! between both facets).
+//! A facet ends at its borders, but the surface continues. So a normal that leans over a border towards the
+//! neighbour is replaced by the facet's own normal: there the neighbour is nearer (convex edges keep the
+//! normals between both facets).
 
 use super::dim::{Convex, borders, face_normal};
 use super::pairs::collide_pair;
@@ -15,8 +15,8 @@ use crate::tuning::manifold::{FACING, MARGIN, POKE, SAME, SAME_NORMAL, SIDEWAYS,
 use crate::tuning::sweeps::{AHEAD, MET, ROUNDS};
 use core::cell::Cell;
 
-/// Up to this number of vertices are looked through for the farthest one, for each facet that may be on
-/// the wrong side.
+/// Up to this number of vertices, the farthest vertex is searched exactly, for each facet that may be on the
+/// wrong side.
 const FEW_VERTICES: usize = 64;
 
 /// Buffers, kept between calls.
@@ -24,7 +24,7 @@ const FEW_VERTICES: usize = 64;
 pub(super) struct PartBuffers {
     parts: Vec<u32>,
     pub(super) found: Vec<LocalManifold>,
-    /// For each of `found` what it replaced, if it is uncertain.
+    /// For each manifold of `found`, the contact that it replaced, if it is uncertain.
     replaced_contacts: Vec<Option<ReplacedContact>>,
     /// Near parts that the motion may lead past, with their present contacts.
     passing: Vec<(u32, LocalManifold, Option<ReplacedContact>)>,
@@ -40,16 +40,16 @@ impl PartBuffers {
     }
 }
 
-/// A contact that was replaced by that of the facet's own face, which is deeper or turned. It may be
-/// the right one.
+/// A contact that a deeper or turned face contact replaced. It may be the right one: the face contact is
+/// uncertain until the contacts of other parts decide.
 #[derive(Clone, Copy, Debug)]
 struct ReplacedContact {
     normal: Vector,
-    /// The least separation.
+    /// The least separation of the replaced contact.
     nearest: f32,
     /// The share of the motion after which the facet meets the other shape.
     share: f32,
-    /// Whether the face's contact is dropped.
+    /// Whether the face contact is dropped.
     is_redundant: bool,
 }
 
@@ -59,13 +59,13 @@ pub(super) struct ClosedSurface<'a> {
     pub(super) surface: &'a Surface,
     /// The box around it, in its own frame.
     pub(super) around: Aabb,
-    /// The facet's normal out of what the surface bounds, in the composite's frame.
+    /// The facet's outward normal of the closed surface, in the composite's frame.
     pub(super) outward: Vector,
 }
 
 impl ClosedSurface<'_> {
-    /// The vertex of the surface that is farthest along a direction; of surfaces with many vertices the
-    /// corner of their box.
+    /// The vertex of the surface that is farthest along a direction; for surfaces with many vertices, the
+    /// farthest corner of their box.
     fn farthest(&self, direction: Vector) -> Vector {
         if self.surface.vertices().len() <= FEW_VERTICES {
             return self.surface.farthest(direction);
@@ -77,30 +77,30 @@ impl ClosedSurface<'_> {
     }
 }
 
-/// A composite shape against a convex one, or against a part of another composite.
+/// A composite shape against a convex shape, or against a part of another composite.
 #[derive(Clone, Copy)]
 pub(super) struct PartQuery<'a> {
     pub(super) composite: &'a Composite<Shape>,
     pub(super) other: &'a Convex<'a>,
     /// The other shape in the composite's frame.
     pub(super) pose: &'a Pose,
-    /// The query; its motion is that of the other shape.
+    /// The query; its motion is the other shape's.
     pub(super) query: ManifoldQuery<'a>,
     /// The group of the other shape.
     pub(super) other_group: u8,
-    /// Tells the features of several part queries apart.
+    /// Distinguishes the features of several part queries.
     pub(super) name: u32,
-    /// Whether each part is collided as if it were the only one, up to the end of the motion.
+    /// Whether each part is collided on its own, up to the end of the motion.
     pub(super) alone: bool,
-    /// Whether points of what is met later are on the composite where it is now, not on the other shape,
-    /// if both move.
+    /// If both shapes move: whether points that are met later lie on the composite at its present pose, not
+    /// on the other shape.
     pub(super) on_composite: bool,
     /// Whether the composite is B of the pair. Two solids are then collided in that order, which
     /// prefers faces of A.
     pub(super) is_b: bool,
-    /// That of the pair, if the composite is one solid.
+    /// The cache of the pair, if the composite is one solid.
     pub(super) cache: Option<&'a Cell<FeatureCache>>,
-    /// If the other shape is a facet of a closed surface that is smaller than the composite.
+    /// The closed surface, smaller than the composite, that has the other shape as a facet, if any.
     pub(super) closed_surface: Option<ClosedSurface<'a>>,
 }
 
@@ -137,7 +137,7 @@ impl<'a> PartQuery<'a> {
     }
 
     /// Adds the manifolds of all parts to `buffers.found`, in the composite's frame. Returns a lower bound of
-    /// the distance to those without.
+    /// the distance to parts without a manifold.
     pub(super) fn collide(&self, buffers: &mut PartBuffers) -> f32 {
         let around = self.other.shape.local_box(self.pose);
         let mut parts = core::mem::take(&mut buffers.parts);
@@ -172,7 +172,7 @@ impl<'a> PartQuery<'a> {
             self.pass_by(start, buffers);
         }
         if buffers.found.len() == start && !self.alone {
-            // Who only asks whether shapes touch does not need to know how far others are.
+            // An overlap test does not need the distance to other parts.
             if self.query.prediction <= 0.0 {
                 return 0.0;
             }
@@ -182,8 +182,8 @@ impl<'a> PartQuery<'a> {
         gap
     }
 
-    /// The first `count` of four facets that may be near or may be met, as bits, and the least gap
-    /// of the others.
+    /// Which of the first `count` of four facets may be near or may be met, as bits, and the least gap of the
+    /// other facets.
     #[inline(always)]
     fn split(&self, gaps: &Gaps, count: usize) -> (u32, f32) {
         let ManifoldQuery { prediction, motion, .. } = self.query;
@@ -200,7 +200,7 @@ impl<'a> PartQuery<'a> {
         (!F32x4::bits(far) & 0xf >> (LANES - count), least)
     }
 
-    /// Drops uncertain contacts from `buffers.found[start..]` that others make redundant.
+    /// Drops uncertain contacts from `buffers.found[start..]` that other contacts make redundant.
     fn drop_redundant(&self, start: usize, buffers: &mut PartBuffers) {
         let PartBuffers { found, replaced_contacts, .. } = buffers;
         for i in start..found.len() {
@@ -217,10 +217,10 @@ impl<'a> PartQuery<'a> {
         replaced_contacts.retain(is_kept);
     }
 
-    /// Whether an uncertain contact is redundant, because a certain one bears the same. The side facets of a
-    /// block on a wide floor overlap it by half its width, and the bottom's contact bears the block. An edge
-    /// that pokes into a wall at a seam is different: both facets there are uncertain, so the wall's face
-    /// stays unless another contact has the replaced normal.
+    /// Whether an uncertain contact is redundant, because a certain contact bears the same load. The side
+    /// facets of a block on a wide floor overlap it by half its width, and the bottom's contact bears the
+    /// block. An edge that pokes into a wall at a seam is different: both facets there are uncertain, so the
+    /// wall's face stays unless another contact has the replaced normal.
     fn is_redundant(
         &self,
         replaced: &ReplacedContact,
@@ -230,8 +230,8 @@ impl<'a> PartQuery<'a> {
     ) -> bool {
         let ManifoldQuery { prediction, motion, .. } = self.query;
         let at_meeting = |m: &LocalManifold| m.lower_bound() + m.normal.dot(motion) * replaced.share;
-        // A corner with the replaced normal is deeper in the face by 1 / cos. Contacts met later have no
-        // corner in the face yet.
+        // A corner with the replaced normal is deeper in the face by a factor of 1 / cos. Contacts met later
+        // have no corner in the face yet.
         let (depth, slack) = (own.lower_bound(), POKE * prediction);
         let cos = max(own.normal.dot(replaced.normal), FACING);
         let deepest = min(replaced.nearest, replaced.nearest / cos);
@@ -240,15 +240,15 @@ impl<'a> PartQuery<'a> {
         let certain =
             || found.iter().zip(replaced_contacts).filter(|(_, replaced)| replaced.is_none()).map(|(m, _)| m);
         let has_normal = |m: &LocalManifold| !is_corner || m.normal.dot(replaced.normal) > TURNED;
-        // The tread of a step has the floor's normal, and is another plane.
+        // The tread of a step has the floor's normal, but lies in another plane.
         let is_plane = |m: &LocalManifold| {
             m.normal.dot(own.normal) > SAME_NORMAL && at_meeting(m) <= at_meeting(own) + SAME * prediction
         };
         certain().any(|m| has_normal(m) && at_meeting(m) <= prediction) && !certain().any(is_plane)
     }
 
-    /// Adds the manifold of one part, if it has one. `screened` are lower bounds of its distance, now and
-    /// during the motion. Returns a lower bound of the distance if the part has no manifold, else infinity.
+    /// Adds the manifold of one part, if any. `screened` are lower bounds of its distance, now and during the
+    /// motion. Returns a lower bound of the distance if the part has no manifold, otherwise infinity.
     fn add_part(&self, part: u32, screened: Option<[f32; 2]>, buffers: &mut PartBuffers) -> f32 {
         let ManifoldQuery { prediction, motion, .. } = self.query;
         let [now, ever] = screened.unwrap_or([-1.0; 2]);
@@ -296,7 +296,7 @@ impl<'a> PartQuery<'a> {
         buffers.replaced_contacts.push(replaced);
     }
 
-    /// Follows the motion to the parts that it may lead past, unless something that touches now stops it.
+    /// Sweeps against the parts that the motion may lead past, unless a touching part stops the motion.
     fn pass_by(&self, start: usize, buffers: &mut PartBuffers) {
         let ManifoldQuery { prediction, motion, met, .. } = self.query;
         let stops = |m: &LocalManifold| m.lower_bound() <= met && -m.normal.dot(motion) > prediction;
@@ -318,7 +318,7 @@ impl<'a> PartQuery<'a> {
         buffers.passing = passing;
     }
 
-    /// Fills `local` with the contact of one part. Returns what it replaced, if it is uncertain.
+    /// Fills `local` with the contact of one part. Returns the replaced contact, if the new one is uncertain.
     fn collide_part(&self, part: u32, prediction: f32, local: &mut LocalManifold) -> Option<ReplacedContact> {
         self.collide_alone(part, prediction, local);
         if let Some(closed_surface) = self.closed_surface.filter(|_| local.count > 0) {
@@ -339,13 +339,13 @@ impl<'a> PartQuery<'a> {
         local.count > 0 && gap > self.query.met && -local.normal.dot(self.query.motion) * AHEAD > gap
     }
 
-    /// The distance at which parts that are farther away than the prediction have met.
+    /// The distance at which parts beyond the prediction distance count as met.
     fn met_ahead(&self) -> f32 {
         min(self.query.met, MET * self.query.prediction)
     }
 
-    /// Adds the points that the motion brings to the part of a contact. What is struck at one of them turns
-    /// to the others.
+    /// Adds the points of a contact's part that the motion will bring together: a body struck at one point
+    /// turns towards the others.
     fn look_ahead(&self, part: u32, local: &mut LocalManifold) {
         let ManifoldQuery { prediction, motion, .. } = self.query;
         let closing = -local.normal.dot(motion);
@@ -359,7 +359,7 @@ impl<'a> PartQuery<'a> {
         }
     }
 
-    /// Fills `local` with the contact of one part as if there were no other.
+    /// Fills `local` with the contact of one part on its own.
     fn collide_alone(&self, part: u32, prediction: f32, local: &mut LocalManifold) {
         let none = Cell::new(FeatureCache::NONE);
         match (self.composite.surface(), self.composite.solids().get(part as usize)) {
@@ -384,8 +384,9 @@ impl<'a> PartQuery<'a> {
         }
     }
 
-    /// Follows the motion to where a part and the other shape are `met` apart. `local` receives the contact
-    /// there, with the separations of now, if they meet. Returns what it replaced, if it is uncertain.
+    /// Sweeps to the time of impact: a part and the other shape are then `met` apart. `local` receives the
+    /// contact at this time with present separations, if they meet. Returns the replaced contact, if the new
+    /// one is uncertain.
     fn cast(&self, part: u32, met: f32, local: &mut LocalManifold) -> Option<ReplacedContact> {
         let way = self.query.motion;
         let mut beside = None;
@@ -404,7 +405,7 @@ impl<'a> PartQuery<'a> {
             let gap = local.lower_bound();
             if gap <= met || round == ROUNDS {
                 let normal = local.normal;
-                // At an edge the normal turns until they touch.
+                // At an edge the normal turns until the shapes touch.
                 share = min(share + max(gap, 0.0) / closing, 1.0);
                 let pose = Pose { position: self.pose.position + way * share, ..*self.pose };
                 let replaced =
@@ -417,8 +418,8 @@ impl<'a> PartQuery<'a> {
                         replaced.map(|replaced| ReplacedContact { share, ..replaced }),
                     ));
                 }
-                // What meets a facet beside a border may cross it before it touches: the neighbour was met
-                // on this side.
+                // A shape that meets a facet beside a border may cross the border before it touches: then it
+                // meets the neighbour on this side.
                 if local.count > 0 || gap < -met {
                     return None;
                 }
@@ -432,7 +433,7 @@ impl<'a> PartQuery<'a> {
         meeting?
     }
 
-    /// Gives a contact that is met after a share of the motion the separations of now.
+    /// Converts a contact that is met after a share of the motion to present separations.
     fn bring_back(&self, share: f32, local: &mut LocalManifold) {
         let way = self.query.motion * share;
         let along = local.normal.dot(way);
@@ -451,8 +452,8 @@ impl<'a> PartQuery<'a> {
         }
     }
 
-    /// A facet's face on the side where the other shape is. The normal of a contact with a border tells
-    /// little of it: under the leaning side of a cone that stands on the face it points into the face.
+    /// The face normal of a facet on the side of the other shape. The normal of a border contact does not
+    /// tell the side: under the leaning side of a cone that stands on the face it points into the face.
     fn toward_other(&self, corner: Vector, face: Vector, normal: Vector) -> Vector {
         let height = |direction: Vector| {
             let local = self.pose.rotation.inverse_rotate(-direction);
@@ -462,16 +463,17 @@ impl<'a> PartQuery<'a> {
             };
             Some((self.pose.transform(lowest) - corner).dot(direction))
         };
-        // The lowest height of the shape over the face, and over its back: negative where it reaches through.
+        // The lowest height of the shape over the face and over its back; negative where the shape reaches
+        // through.
         let (Some(over), Some(under)) = (height(face), height(-face)) else {
             return if normal.dot(face) < 0.0 { -face } else { face };
         };
         if over < under { -face } else { face }
     }
 
-    /// Replaces the contact of a facet of a closed surface that pushes it out of what the surface bounds, or
-    /// through the composite, by that of the face on the side where the surface is. Drops it if the facet is
-    /// the surface's back.
+    /// Replaces a contact that pushes a facet of a closed surface along its outward normal, or through the
+    /// composite, by the face contact on the side of the surface. Drops it if the facet is on the surface's
+    /// back.
     fn keep_outside(
         &self,
         closed_surface: &ClosedSurface,
@@ -498,8 +500,8 @@ impl<'a> PartQuery<'a> {
         }
     }
 
-    /// Replaces a facet's manifold by that of its face if its normal leans over a border where the surface
-    /// goes on. Returns what it replaced if the face is deeper or turned by more than 8°.
+    /// Replaces a facet's contact by its face contact if the normal leans over a border where the surface
+    /// continues. Returns the replaced contact if the face contact is deeper or turned by more than 8°.
     fn keep_on_surface(
         &self,
         surface: &Surface,
@@ -540,7 +542,7 @@ impl<'a> PartQuery<'a> {
     }
 }
 
-/// One number of three: features only need to be told apart, and to be the same in the next step.
+/// A hash of three numbers: features only need to be distinct, and the same in the next step.
 fn mix(words: [u32; 3]) -> u32 {
     words.into_iter().fold(0, |hash: u32, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9))
 }

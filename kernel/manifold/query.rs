@@ -3,14 +3,14 @@
 use crate::math::{Pose, Vector};
 use core::cell::Cell;
 
-/// What the function of a pair of convex shapes is given besides the shapes.
+/// Inputs of the function of a convex pair besides the shapes.
 #[derive(Clone, Copy)]
 pub(super) struct PairInput<'a> {
     /// The pose of B in A's frame.
     pub pose: &'a Pose,
     /// Points up to this distance are found, in metres.
     pub prediction: f32,
-    /// The cache of the pair, from the last step and for the next one.
+    /// The cache of the pair, from the last step and for the next step.
     pub cache: &'a Cell<FeatureCache>,
 }
 
@@ -19,12 +19,12 @@ pub(super) struct PairInput<'a> {
 pub struct ManifoldQuery<'a> {
     /// Points up to this distance are found, in metres.
     pub prediction: f32,
-    /// How far B moves against A until the end of the step, in A's frame. Parts that may be passed by are
-    /// followed to where they meet.
+    /// Motion of B relative to A until the end of the step, in A's frame. Parts that may be passed by are
+    /// swept to their time of impact.
     pub motion: Vector,
-    /// Parts farther away than this may be passed by. Nearer ones count as met, or may be met by turning.
+    /// Parts farther away than this may be passed by. Nearer parts count as met, or may be met by turning.
     pub met: f32,
-    /// Whether A and B are ground: not dynamic. Ground is never inside of what is dynamic.
+    /// Whether A and B are ground: not dynamic. Ground is never inside a dynamic shape.
     pub ground: [bool; 2],
     /// The group of each facet of A and of B; facets beyond the list have 0. Manifolds of different groups
     /// are not merged.
@@ -40,7 +40,7 @@ impl<'a> ManifoldQuery<'a> {
         Self { prediction, motion: Vector::ZERO, met: f32::INFINITY, ground: [false; 2], groups: Self::ALIKE }
     }
 
-    /// The same with A and B swapped, `pose` being where B is in A's frame.
+    /// The query with A and B swapped. `pose` is B's pose in A's frame.
     pub(super) fn swapped(&self, pose: &Pose) -> Self {
         let ([own, other], [a, b]) = (self.ground, self.groups);
         let motion = pose.rotation.inverse_rotate(-self.motion);
@@ -56,7 +56,7 @@ impl<'a> ManifoldQuery<'a> {
 /// The separating axis or reference feature of a pair's last manifold: eight bytes in its contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeatureCache {
-    /// The kind of axis: 0 is none, the others are numbered by the function of the pair.
+    /// The kind of axis: 0 is none; the function of the pair numbers the other kinds.
     pub kind: u8,
     /// A feature of shape A.
     pub a: u8,

@@ -1,7 +1,7 @@
-//! Facets that a shape is not near to, ruled out four at a time by slabs along a few directions.
+//! Rules out facets far from a shape, four at a time, by slabs along a few directions.
 //!
-//! The directions are the axes of the composite, those of the other shape's own box, and the normal of each
-//! facet. What is left is collided; see [`composite`](super::composite).
+//! The directions are the axes of the composite, the axes of the other shape's own box, and the normal of
+//! each facet. The remaining facets are collided; see [`composite`](super::composite).
 
 use super::dim::facing;
 use crate::math::{DIM, F32x4, Lane, Num, Pose, Rot, Vector};
@@ -10,11 +10,11 @@ use crate::shape::{Aabb, Shape, Surface};
 /// The number of facets side by side.
 pub(super) const LANES: usize = 4;
 
-/// What a shape and its motion are compared with.
+/// The extents of a shape and its motion, for comparison with facets.
 pub(super) struct Screen {
     slabs: [Slab; 2 * DIM],
-    /// The origin of the shape's frame. Facets are taken relative to it, so that rounding is small where
-    /// they are near.
+    /// The origin of the shape's frame. Facets are taken relative to this origin, so that rounding is small
+    /// for near facets.
     origin: Vector<F32x4>,
     /// The box of the shape's core: its centre from the origin, and its half axes.
     center: Vector<F32x4>,
@@ -30,7 +30,7 @@ struct Slab {
     axis: Vector<F32x4>,
     low: F32x4,
     high: F32x4,
-    /// How far the motion takes the shape along the direction, and against it (negative).
+    /// The motion of the shape along the direction, and against it (negative).
     forth: F32x4,
     back: F32x4,
 }
@@ -74,7 +74,7 @@ impl Screen {
         }
     }
 
-    /// Bounds of the distances to up to four facets of a surface, the last of which is repeated.
+    /// Bounds of the distances to up to four facets of a surface; the last facet is repeated.
     pub(super) fn gaps(&self, surface: &Surface, facets: &[u32]) -> Gaps {
         let mut corners = [Vector::<F32x4>::ZERO; DIM];
         for lane in 0..LANES {

@@ -2,7 +2,7 @@
 //! other frames.
 //!
 //! A run takes [`POSES`] poses of each pair. `AVIAN_POSES` and `AVIAN_SEED` in the environment replace their
-//! number and the seed: a million poses of each pair are for changes of this folder.
+//! number and the seed. Changes of this folder are tested with a million poses of each pair.
 
 use super::dim::tests_pairs::{
     BESIDE, KINDS, allowed, exact, far, in_frame, inexact, rotation, shape, square_rotation,
@@ -16,10 +16,10 @@ use crate::shape::Shape;
 const POSES: u64 = 2_000;
 /// Shapes are kept for this many poses.
 const POSES_OF_SHAPES: u64 = 8;
-/// One pose of this many is compared with the exact oracle, where there is one.
+/// One pose of this many is compared with the exact oracle, where available.
 const EXACT_EVERY: u64 = 8;
-/// One pose of this many may be off. A million poses found up to 1 in 2,000 of some pairs: points
-/// that are less deep than the normal says where thin plates cross deeply, and in 2D normals of
+/// One pose of this many may be off. A million poses found up to 1 in 2,000 of some pairs: points that are
+/// less deep than the separation along the normal where thin plates cross deeply, and in 2D normals of
 /// segments a metre apart.
 const POSES_OF_OUTLIER: u64 = 500;
 /// A usual prediction distance.
@@ -41,7 +41,7 @@ impl Dice {
         z ^ (z >> 31)
     }
 
-    /// One of the first `count` whole numbers.
+    /// A random whole number below `count`.
     pub(super) fn below(&mut self, count: usize) -> usize {
         (self.next() % count as u64) as usize
     }
@@ -107,7 +107,7 @@ fn along(a: &Shape, b: &Shape, pose: &Pose, normal: Vector) -> f64 {
     (frame.position + frame.rotation.rotate(low)).dot(n) - top
 }
 
-/// Bounds of the signed distance: exact where the cores are apart, only the lower one otherwise.
+/// Bounds of the signed distance: exact where the cores are apart; otherwise only the lower bound is known.
 fn bounds(a: &Shape, b: &Shape, pose: &Pose, start: Vector, dice: &mut Dice) -> [f64; 2] {
     if let Shape::HalfSpace(plane) = a {
         return [along(a, b, pose, plane.normal); 2];

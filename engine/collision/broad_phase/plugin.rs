@@ -1,4 +1,4 @@
-//! The plugins of the broad phase: its stages, and the one that finds pairs.
+//! The plugins of the broad phase: one adds its stages, the other finds pairs.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel, system::SystemParamItem};
@@ -36,7 +36,7 @@ impl Plugin for BroadPhaseCorePlugin {
 /// Finds pairs with the bounding volume hierarchies of
 /// [`ColliderTreePlugin`](crate::collider_tree::ColliderTreePlugin).
 ///
-/// `H` are the [`CollisionHooks`] that filter them.
+/// `H` are the [`CollisionHooks`] that filter pairs.
 pub struct BvhBroadPhasePlugin<H: CollisionHooks = ()>(PhantomData<fn() -> H>);
 
 impl<H: CollisionHooks> Default for BvhBroadPhasePlugin<H> {

@@ -64,7 +64,7 @@ impl ColliderAabb {
         self.max - self.min
     }
 
-    /// The smallest box around both.
+    /// The smallest box around both boxes.
     #[inline]
     pub fn merged(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
@@ -76,21 +76,21 @@ impl ColliderAabb {
         Self { min: self.min - amount, max: self.max + amount }
     }
 
-    /// The box with each side moved inward by `amount`. An axis on which it is thinner than twice that
-    /// collapses to its middle.
+    /// The box with each side moved inward by `amount`. An axis on which the box is thinner than twice
+    /// `amount` collapses to its middle.
     #[inline]
     pub fn shrink(&self, amount: Vector) -> Self {
         let center = self.center();
         Self { min: (self.min + amount).min(center), max: (self.max - amount).max(center) }
     }
 
-    /// Whether two boxes have a point in common; touching counts.
+    /// Whether two boxes overlap; touching counts.
     #[inline]
     pub fn intersects(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
     }
 
-    /// Whether `other` lies inside of this box; touching counts.
+    /// Whether `other` lies inside this box; touching counts.
     #[inline]
     pub fn contains(&self, other: &Self) -> bool {
         self.min.cmple(other.min).all() && self.max.cmpge(other.max).all()
@@ -108,13 +108,13 @@ pub struct EnlargedAabb(ColliderAabb);
 crate::type_path::type_path!(EnlargedAabb, "collision::collider");
 
 impl EnlargedAabb {
-    /// The given box, as it is.
+    /// An enlarged box that equals the given box.
     pub fn new(aabb: ColliderAabb) -> Self {
         Self(aabb)
     }
 
-    /// If `aabb` is not inside of this box, sets this box to `aabb` grown by `margin` (m) on all sides
-    /// and returns true.
+    /// If `aabb` is not inside this box, sets this box to `aabb` grown by `margin` (m) on all sides and
+    /// returns true.
     pub fn update(&mut self, aabb: &ColliderAabb, margin: Scalar) -> bool {
         if self.0.contains(aabb) {
             return false;

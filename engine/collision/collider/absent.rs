@@ -1,5 +1,5 @@
-//! Stands in for the default collider without feature `default-collider`: a type without values, so that no
-//! entity has one and queries for it are empty.
+//! Replaces the default collider in builds without feature `default-collider`: a type without values. No
+//! entity has this component, so queries for it are empty.
 
 use bevy_ecs::prelude::Component;
 use kernel::{
@@ -19,7 +19,7 @@ impl Collider {
     }
 }
 
-/// Contact manifolds of a collider that the kernel has no shape for, and a ball.
+/// Contact manifolds of a ball and a collider whose shape the kernel does not support.
 pub(crate) fn foreign_ball_manifolds(
     collider: &Collider,
     _: Vector,
@@ -30,7 +30,7 @@ pub(crate) fn foreign_ball_manifolds(
     match *collider {}
 }
 
-/// Contact manifolds of two colliders, one of which the kernel has no shape for.
+/// Contact manifolds of two colliders. The kernel does not support the shape of at least one.
 pub(crate) fn foreign_manifolds(a: &Collider, _: &Collider, _: &Pose, _: f32, _: &mut Vec<LocalManifold>) {
     match *a {}
 }

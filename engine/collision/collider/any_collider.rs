@@ -9,7 +9,7 @@ use bevy_ecs::component::Mutable;
 use bevy_ecs::prelude::{Component, Entity};
 use bevy_ecs::system::{ReadOnlySystemParam, SystemParam};
 
-/// A type that can be made a collider of type `C`, such as a geometric primitive of Bevy.
+/// A type that can be converted to a collider of type `C`, such as a geometric primitive of Bevy.
 pub trait IntoCollider<C: AnyCollider> {
     /// Makes the collider.
     fn collider(&self) -> C;
@@ -73,15 +73,16 @@ impl ContactManifoldContext<'_, '_, '_, ()> {
 
 /// A component that the engine can use as a collider.
 ///
-/// Collider types that need no other data set `Context = ()` and get [`SimpleCollider`]. Others name a
+/// Collider types that need no other data set `Context = ()` and get [`SimpleCollider`]. Other types name a
 /// read-only system parameter, for instance a query for components that their shape depends on.
 ///
-/// A type of your own works with [`ColliderBackendPlugin`](super::ColliderBackendPlugin) and
-/// [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin) for it. Colliders of one type
-/// collide with each other, not with those of other types. Its manifolds are computed by one thread, once per
-/// step and pair; spatial queries and sweeps of fast bodies do not see it. Where its shape depends on a
-/// context, the box is looked at before each step; a change that leaves the box as it is must be told by
-/// `set_changed` on the collider, or bodies sleep on.
+/// A custom type needs a [`ColliderBackendPlugin`](super::ColliderBackendPlugin) and a
+/// [`NarrowPhasePlugin`](crate::collision::narrow_phase::NarrowPhasePlugin). Colliders of one type collide
+/// with each other, not with colliders of other types. The manifolds of a custom type are computed by one
+/// thread, once per step and pair. Spatial queries and sweeps of fast bodies ignore custom types.
+///
+/// If the shape depends on a context, the engine compares the box of the collider before each step. Report a
+/// change that keeps the box by `set_changed` on the collider; otherwise sleeping bodies stay asleep.
 pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
     /// The system parameter that the methods need.
     type Context: for<'w, 's> ReadOnlySystemParam<Item<'w, 's>: Send + Sync>;
@@ -94,8 +95,8 @@ pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
         context: AabbContext<Self::Context>,
     ) -> ColliderAabb;
 
-    /// The box around the collider on its way from one pose to another. By default the union of the boxes
-    /// at both ends.
+    /// The box around the motion of the collider from one pose to another. By default the union of the boxes
+    /// at both poses.
     fn swept_aabb_with_context(
         &self,
         start_position: Vector,
@@ -108,11 +109,11 @@ pub trait AnyCollider: Component<Mutability = Mutable> + ComputeMassProperties {
             .merged(self.aabb_with_context(end_position, end_rotation, context))
     }
 
-    /// Replaces `manifolds` by those of this collider and another at poses in the world.
+    /// Replaces `manifolds` by the manifolds of this collider and another one, at poses in the world.
     ///
-    /// Normals are from this collider to the other, points have
-    /// [`point`](crate::prelude::ContactPoint::point) in the world. Points up to `prediction_distance` metres
-    /// apart are wanted, with negative penetration: they stop what moves fast.
+    /// Normals point from this collider to the other. Points have their
+    /// [`point`](crate::prelude::ContactPoint::point) in the world. Include points up to
+    /// `prediction_distance` metres apart, with negative penetration: they stop fast bodies.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     fn contact_manifolds_with_context(
         &self,
@@ -134,7 +135,7 @@ pub trait SimpleCollider: AnyCollider<Context = ()> {
         self.aabb_with_context(position, rotation, AabbContext::fake())
     }
 
-    /// The box around the collider on its way from one pose to another.
+    /// The box around the motion of the collider from one pose to another.
     fn swept_aabb(
         &self,
         start_position: Vector,
@@ -151,8 +152,8 @@ pub trait SimpleCollider: AnyCollider<Context = ()> {
         )
     }
 
-    /// Replaces `manifolds` by those of this collider and another at poses in the world, with points up to
-    /// `prediction_distance` metres apart.
+    /// Replaces `manifolds` by the manifolds of this collider and another one, at poses in the world, with
+    /// points up to `prediction_distance` metres apart.
     #[expect(clippy::too_many_arguments, reason = "as in Avian")]
     fn contact_manifolds(
         &self,

@@ -27,18 +27,18 @@ use bevy_ecs::schedule::ScheduleLabel;
 use bevy_ecs::system::{SystemChangeTick, SystemParam};
 use core::marker::PhantomData;
 
-/// Makes components of type `C` colliders: adds the components that every collider has, lets their scale
-/// follow the transform, and updates mass properties.
+/// Makes components of type `C` colliders: adds the components that every collider has, applies the scale of
+/// transforms to colliders, and updates mass properties.
 ///
-/// The plugin for [`Collider`](super::Collider) is part of `PhysicsPlugins`. Add one for each collider
-/// type of your own.
+/// The plugin for [`Collider`](super::Collider) is part of `PhysicsPlugins`. Add one for each custom collider
+/// type.
 pub struct ColliderBackendPlugin<C: ScalableCollider> {
     schedule: Interned<dyn ScheduleLabel>,
     _collider: PhantomData<C>,
 }
 
 impl<C: ScalableCollider> ColliderBackendPlugin<C> {
-    /// Runs the systems in a schedule: the one in which physics runs.
+    /// Runs the systems in `schedule`, the schedule in which physics runs.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern(), _collider: PhantomData }
     }
@@ -53,7 +53,7 @@ impl<C: ScalableCollider> Default for ColliderBackendPlugin<C> {
 
 impl<C: ScalableCollider> Plugin for ColliderBackendPlugin<C> {
     fn build(&self, app: &mut App) {
-        // It fails only if `C` requires the component already, and then that requirement stays.
+        // Registration fails only if `C` already requires the component. That requirement then stays.
         let _ = app.try_register_required_components::<C, ColliderMarker>();
         let _ = app.try_register_required_components::<C, ColliderAabb>();
         let _ = app.try_register_required_components::<C, CollisionLayers>();
@@ -97,7 +97,7 @@ pub struct Weigher<'w, 's, C: AnyCollider> {
 }
 
 impl<C: AnyCollider> Weigher<'_, '_, C> {
-    /// Recomputes the mass of a collider, and that of its body when the command ends.
+    /// Recomputes the mass of a collider, and the mass of its body when the command ends.
     fn weigh(&mut self, entity: Entity) {
         if self.update(entity) {
             self.queue.push(entity);
@@ -107,7 +107,7 @@ impl<C: AnyCollider> Weigher<'_, '_, C> {
     /// Recomputes the mass of a collider. Returns whether it changed.
     fn update(&mut self, entity: Entity) -> bool {
         let Ok((collider, density, mut properties)) = self.colliders.get_mut(entity) else { return false };
-        // A density that is NaN or negative counts as 0: it would reach the solver through sums.
+        // A NaN or negative density counts as 0. It would reach the solver through sums.
         let density = if density.0.is_finite() && density.0 > 0.0 { density.0 } else { 0.0 };
         properties.set_if_neq(ColliderMassProperties::from_shape(collider, density))
     }
@@ -132,7 +132,7 @@ impl<C: ScalableCollider> Entrance<'_, '_, C> {
     }
 }
 
-/// Computes scale and mass of a new collider before the mass of its body: observers of insertion run after
+/// Computes scale and mass of a new collider before the mass of its body. Observers of insertion run after
 /// all observers of addition.
 fn enter_added<C: ScalableCollider>(added: On<Add, C>, mut entrance: Entrance<C>) {
     entrance.enter(added.entity);
@@ -151,8 +151,8 @@ fn enter_replaced<C: ScalableCollider>(replaced: On<Discard, (C, ColliderDensity
     });
 }
 
-/// Removes the components that the engine added to a collider, and then recomputes the body's mass: commands
-/// run in the order of parameters.
+/// Removes the components that the engine added to a collider, and then recomputes the body's mass. Commands
+/// run in the order of the parameters.
 fn strip<C: AnyCollider>(removed: On<Remove, C>, mut commands: Commands, mut queue: MassPropertyQueue) {
     let former = removed.entity;
     queue.push(former);
@@ -172,7 +172,7 @@ fn weigh_former_sensor<C: AnyCollider>(former: On<Remove, Sensor>, mut weigher: 
     weigher.weigh(former.entity);
 }
 
-/// Recomputes [`ColliderMassProperties`] where the collider or its density was mutated. Sensors keep theirs.
+/// Recomputes [`ColliderMassProperties`] after the collider or its density was mutated, except for sensors.
 pub fn update_collider_mass_properties<C: AnyCollider>(
     all: Query<(Entity, Ref<C>, Ref<ColliderDensity>), Without<Sensor>>,
     mut weigher: Weigher<C>,

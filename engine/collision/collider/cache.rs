@@ -1,4 +1,4 @@
-//! Colliders that were made from meshes, kept for other entities with the same mesh.
+//! Colliders made from meshes, kept for other entities with the same mesh.
 
 use bevy_app::{App, Plugin, Update};
 use bevy_asset::{AssetEvent, AssetId};
@@ -37,8 +37,8 @@ impl Plugin for ColliderCachePlugin {
 
 /// Colliders by their mesh.
 ///
-/// Changes of assets are told at the end of a frame. A collider that was made before is not used in the frame
-/// in which assets changed: it may be of the mesh as it was.
+/// Bevy reports changes of assets at the end of a frame. In a frame in which assets changed, older colliders
+/// are not used: their mesh may have changed.
 #[derive(Resource, Default)]
 pub(crate) struct ColliderCache {
     colliders: HashMap<AssetId<Mesh>, Vec<Kept>>,
@@ -46,7 +46,7 @@ pub(crate) struct ColliderCache {
     round: u64,
     /// The first round whose colliders may be used.
     trusted: u64,
-    /// Changes up to here have been told.
+    /// Changes up to this tick have been reported.
     told: Tick,
 }
 
@@ -58,19 +58,19 @@ struct Kept {
 }
 
 impl ColliderCache {
-    /// Whether a change of meshes has not been told yet.
+    /// Whether a change of meshes has not been reported yet.
     pub(crate) fn is_untold(&self, changed: Tick, now: Tick) -> bool {
         changed.is_newer_than(self.told, now)
     }
 
-    /// Begins a round of constructors. `is_changed` is whether a mesh may have changed, and that was
-    /// not told yet.
+    /// Begins a round of constructors. `is_changed` tells whether a mesh may have changed without a report so
+    /// far.
     pub(crate) fn begin(&mut self, is_changed: bool) {
         self.round += 1;
         self.trusted = if is_changed { self.round } else { 0 };
     }
 
-    /// The collider that was made of a mesh by an equal constructor.
+    /// The collider that an equal constructor made from a mesh.
     pub(crate) fn get(&self, mesh: AssetId<Mesh>, constructor: &ColliderConstructor) -> Option<Collider> {
         let kept = self.colliders.get(&mesh)?.iter();
         let mut usable = kept.filter(|kept| kept.round >= self.trusted && kept.constructor == *constructor);
@@ -80,8 +80,8 @@ impl ColliderCache {
     /// Keeps a collider that was made in this round.
     pub(crate) fn insert(&mut self, mesh: AssetId<Mesh>, constructor: &ColliderConstructor, made: &Collider) {
         let of_mesh = self.colliders.entry(mesh).or_default();
-        // Those of former rounds are made anew when they are next needed, or are outdated. One with
-        // NaN equals none.
+        // Colliders of untrusted rounds are dropped, and made again when needed. A constructor with NaN
+        // equals none.
         of_mesh.retain(|kept| kept.round >= self.trusted && kept.constructor != *constructor);
         if of_mesh.len() < MOST_OF_MESH {
             let (constructor, collider) = (constructor.clone(), made.clone());
@@ -90,7 +90,7 @@ impl ColliderCache {
     }
 }
 
-/// Maximum number of constructors of one mesh that are kept. More are made each time. Usual are one or two.
+/// Maximum number of constructors kept per mesh. Others make their collider each time. One or two are usual.
 const MOST_OF_MESH: usize = 16;
 
 /// Forgets the colliders of meshes that are changed or gone.
@@ -99,7 +99,7 @@ fn forget_changed_meshes(
     mut cache: ResMut<ColliderCache>,
     system: SystemChangeTick,
 ) {
-    // Bevy sends events at the end of a frame: those read here are of changes before the last frame's end.
+    // Bevy sends events at the end of a frame: these events report changes before the end of the last frame.
     cache.told = system.last_run();
     for event in events.read() {
         if let AssetEvent::Modified { id } | AssetEvent::Removed { id } | AssetEvent::Unused { id } = event {

@@ -1,4 +1,4 @@
-//! Collider types of the app in the tables: as boxes, whose contacts the type itself computes.
+//! Collider types of the app in the tables. The kernel sees them as boxes; the type itself computes contacts.
 
 use bevy_app::App;
 use bevy_ecs::{
@@ -17,18 +17,18 @@ use crate::{
     schedule::{PhysicsSchedule, PhysicsStepSystems},
 };
 
-/// The shape of a collider of a type of the app. Immutable, so that observers see every change.
+/// The shape of a collider type of the app. Immutable, so that observers see every change.
 #[derive(Component, Clone, Debug)]
 #[component(immutable)]
 pub(crate) struct CustomShape(pub(crate) Shape);
 
-/// Whether a collider type is one of the app.
+/// Whether a collider type is defined by the app.
 pub(crate) fn is_custom<C: AnyCollider>() -> bool {
     TypeId::of::<C>() != TypeId::of::<Collider>()
 }
 
-/// Keeps the shapes of a collider type of the app up to date: of new colliders at once, of changed ones
-/// before each step.
+/// Keeps the shapes of a collider type of the app up to date: new colliders at once, changed colliders before
+/// each step.
 pub(super) fn watch_shapes<C: AnyCollider>(app: &mut App) {
     app.add_observer(shape_added::<C>).add_observer(shape_removed::<C>).add_systems(
         PhysicsSchedule,
@@ -38,7 +38,7 @@ pub(super) fn watch_shapes<C: AnyCollider>(app: &mut App) {
 
 fn shape_removed<C: AnyCollider>(on: On<Remove, C>, mut commands: Commands) {
     commands.entity(on.entity).queue_silenced(|mut entity: EntityWorldMut| {
-        // Another one may have been inserted meanwhile.
+        // Another collider may have been inserted meanwhile.
         if !entity.contains::<C>() {
             entity.remove::<CustomShape>();
         }
@@ -56,7 +56,7 @@ fn shape_added<C: AnyCollider>(
     }
 }
 
-/// Shapes that depend on a context may change without their component, so all of them are looked at.
+/// A shape that depends on a context may change while its component does not, so all shapes are checked.
 fn update_shapes<C: AnyCollider>(
     colliders: Query<(Entity, Ref<C>, Option<&CustomShape>), Allow<Disabled>>,
     context: StaticSystemParam<C::Context>,
@@ -78,10 +78,10 @@ fn update_shapes<C: AnyCollider>(
     }
 }
 
-/// What an invalid box is taken for.
+/// The box that replaces an invalid one.
 const POINT: Aabb = Aabb { min: kernel::math::Vector::ZERO, max: kernel::math::Vector::ZERO };
 
-/// Gives a collider its box. An invalid one is warned of, and becomes a point.
+/// Gives a collider its box. An invalid box gives a warning, and becomes a point.
 fn set_box(entity: Entity, aabb: Option<Aabb>, commands: &mut Commands) {
     if aabb.is_none() {
         warn!("the box of the collider {entity} is not valid; it is taken for a point");

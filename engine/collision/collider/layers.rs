@@ -148,9 +148,9 @@ impl Not for LayerMask {
     }
 }
 
-/// The layers that a collider is in, and those it interacts with.
+/// The layers that a collider is in, and the layers it interacts with.
 ///
-/// Two colliders interact if each is in a layer that the other's filters contain. By default a collider is in
+/// Two colliders interact if the filters of each contain a layer of the other. By default a collider is in
 /// layer 0 and interacts with all layers. The component is immutable: insert it again to change it, and
 /// existing contacts are filtered again.
 ///
@@ -198,7 +198,7 @@ impl CollisionLayers {
         Self { memberships: memberships.into(), filters: filters.into() }
     }
 
-    /// The same from raw bits.
+    /// Layers from raw bits.
     pub const fn from_bits(memberships: u32, filters: u32) -> Self {
         Self { memberships: LayerMask(memberships), filters: LayerMask(filters) }
     }

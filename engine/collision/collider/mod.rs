@@ -1,6 +1,6 @@
-//! Colliders: the shapes that bodies touch with, and the components beside them.
+//! Colliders: the shapes of bodies for contacts and queries, and their components.
 //!
-//! [`Collider`] is the default one; any component can be a collider through [`AnyCollider`].
+//! [`Collider`] is the default type; any component can be a collider through [`AnyCollider`].
 
 mod aabb;
 #[cfg(not(feature = "default-collider"))]
@@ -84,8 +84,8 @@ pub struct ColliderDisabled;
 #[doc(alias = "Trigger")]
 pub struct Sensor;
 
-/// The colliders that a collider touches, sensors included. Insert it on a collider; the engine fills it at
-/// the end of each step, before collision events are sent. Colliders that are despawned leave it at once.
+/// The colliders that a collider touches, sensors included. Insert it on a collider; the engine updates it at
+/// the end of each step, before collision events are sent. Despawned colliders are removed at once.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -108,7 +108,7 @@ impl MapEntities for CollidingEntities {
     }
 }
 
-/// Distance from the surface at which other colliders are kept, in metres.
+/// The distance kept between the surface of a collider and other colliders, in metres.
 ///
 /// A small margin makes thin and jagged shapes more robust, at the cost of a visible gap. A collider without
 /// the component has the margin of its body, or none.

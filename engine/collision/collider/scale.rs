@@ -20,26 +20,26 @@ use core::ops::DerefMut;
 /// Number of subdivisions of a curved shape whose transform is scaled unevenly.
 const SUBDIVISIONS: u32 = 10;
 
-/// Smallest and largest factor of a scale. Smaller ones make a point of a shape of usual size, larger ones
-/// exceed the coordinates that colliders may have.
+/// Smallest and largest factor of a scale. A smaller factor makes a point of a shape of usual size; a larger
+/// one exceeds the coordinates that colliders may have.
 const MIN_SCALE: Scalar = 1.0e-5;
 const MAX_SCALE: Scalar = 1.0e7;
 
-/// Scales whose relative difference is at most this count as the same.
+/// Scales with at most this relative difference count as equal.
 ///
-/// A turn below an uneven scale leaves noise in the scale: an `f32` quaternion is a unit to about 10⁻⁷, and a
-/// scale is the product of one such error for each ancestor. 10⁻⁵ has room for a deep hierarchy, and is too
-/// small to see: 10 µm of a metre. With less, shapes would be built again whenever a parent turns. With more,
-/// a slow growth would be in jumps.
+/// A rotation below an uneven scale leaves noise in the scale: an `f32` quaternion has unit length to about
+/// 10⁻⁷, and each ancestor multiplies the scale by one such error. 10⁻⁵ has room for a deep hierarchy, and is
+/// too small to see: 10 µm per metre. With a smaller value shapes would be rebuilt whenever a parent turns.
+/// With a larger value slow growth would be visible as jumps.
 const SAME_SCALE: Scalar = 1.0e-5;
 
-/// Whether two scales are the same but for rounding. Never, if one is not finite.
+/// Whether two scales are equal up to rounding. False if one of them is not finite.
 fn is_same(a: Vector, b: Vector) -> bool {
     (a - b).abs().cmple(b.abs() * SAME_SCALE).all()
 }
 
-/// The scale without noise between its axes: a scale that is the same along two axes is so in all bits, so
-/// that round shapes stay round.
+/// The scale without noise between its axes: nearly equal factors become equal in all bits, so that round
+/// shapes stay round.
 fn without_noise(scale: Vector) -> Vector {
     let mut axes = scale.to_array();
     for i in 1..axes.len() {
@@ -53,15 +53,15 @@ fn without_noise(scale: Vector) -> Vector {
     Vector::from_array(axes)
 }
 
-/// Gives a collider the scale of its transform. `false` if no collider can have it: the collider
-/// keeps its own.
+/// Gives a collider the scale of its transform. Returns `false` if no collider can have it: the collider
+/// keeps its own scale.
 fn fit<C: ScalableCollider>(mut collider: impl DerefMut<Target = C>, scale: Vector) -> bool {
     if !scale.to_array().iter().all(|s| (MIN_SCALE..=MAX_SCALE).contains(&s.abs())) {
         return false;
     }
     if !is_same(scale, collider.scale()) {
         collider.set_scale(without_noise(scale), SUBDIVISIONS);
-        // A shape may refuse it.
+        // The shape may refuse the scale.
         return is_same(scale, collider.scale());
     }
     true
@@ -83,7 +83,7 @@ pub struct TransformScale<'w, 's> {
 
 impl TransformScale<'_, '_> {
     /// Gives a collider the scale of its transform, at once. [`update_collider_scale`] follows later changes,
-    /// and warns of scales that no collider has.
+    /// and warns of unsupported scales.
     pub(super) fn apply_to<C: ScalableCollider>(&self, entity: Entity, collider: impl DerefMut<Target = C>) {
         let is_on = self.config.as_ref().is_some_and(|config| config.transform_to_collider_scale);
         if !is_on || !self.followers.contains(entity) {
@@ -96,14 +96,14 @@ impl TransformScale<'_, '_> {
     }
 }
 
-/// What the search for changes reads.
+/// The components that the search for changes reads.
 type Searched<C> = (Entity, Ref<'static, C>, Ref<'static, ColliderTransform>);
 
 /// Gives colliders the scale of their transforms ([`ColliderTransform::scale`]), if the scale or the
 /// collider changed.
 ///
-/// A scale that is almost zero, too large or not finite is reported once, and the collider keeps the last
-/// good one. Part of [`ColliderBackendPlugin`](super::ColliderBackendPlugin). It runs while
+/// A scale that is almost zero, too large or not finite is reported once, and the collider keeps its last
+/// valid scale. Part of [`ColliderBackendPlugin`](super::ColliderBackendPlugin). It runs while
 /// [`PhysicsTransformConfig::transform_to_collider_scale`] is on.
 pub fn update_collider_scale<C: ScalableCollider>(
     mut colliders: ParamSet<(Query<Searched<C>>, Query<(&mut C, &ColliderTransform)>)>,

@@ -10,12 +10,12 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use super::pair::{ContactEdge, ContactId, ContactPair, ContactPairFlags};
 use crate::data_structures::pair_key::PairKey;
 
-/// All pairs of colliders whose boxes overlap, touching or not, awake or asleep, in the order of ids.
+/// All pairs of colliders whose boxes overlap, touching or not, awake or asleep, in order of ids.
 ///
-/// The resource is filled after the narrow phase and after the solver, from the step after it was first
-/// read on: an app that never reads it pays nothing. Contacts of despawned colliders are removed at once,
-/// and the last contacts take their places in the order. [`Collisions::graph`](super::Collisions::graph) is
-/// filled at once.
+/// The resource is filled after the narrow phase and after the solver, starting in the step after its first
+/// read: an app that never reads it pays nothing. Contacts of despawned colliders are removed at once, and
+/// the last contacts take their places in the order. [`Collisions::graph`](super::Collisions::graph) has no
+/// such delay.
 ///
 /// A broad phase of the app adds pairs to the resource with [`add_edge`](Self::add_edge), in
 /// [`BroadPhaseSystems::CollectCollisions`](crate::prelude::BroadPhaseSystems::CollectCollisions). They
@@ -23,7 +23,7 @@ use crate::data_structures::pair_key::PairKey;
 /// [`CollisionHooks`](crate::prelude::CollisionHooks).
 #[derive(Resource, Clone, Debug, Default)]
 pub struct ContactGraph {
-    /// Whether it was ever read.
+    /// Whether the app ever read the graph.
     is_read: Flag,
     /// Pairs to be added.
     added: Vec<AddedPair>,
@@ -32,11 +32,11 @@ pub struct ContactGraph {
     edges: Vec<ContactEdge>,
     active: Vec<ContactPair>,
     sleeping: Vec<ContactPair>,
-    /// Places in `edges` by contact id.
+    /// Indices into `edges` by contact id.
     by_id: HashMap<u32, usize>,
-    /// Places in `edges` by the indices of both entities.
+    /// Indices into `edges` by the indices of both entities.
     by_key: HashMap<u64, usize>,
-    /// Places in `edges` by collider.
+    /// Indices into `edges` by collider.
     by_collider: EntityHashMap<Vec<usize>>,
 }
 
@@ -44,7 +44,7 @@ pub struct ContactGraph {
 #[derive(Clone, Debug)]
 pub(crate) struct AddedPair {
     pub(crate) colliders: [Entity; 2],
-    /// Whether the pair is to be pushed apart.
+    /// Whether the solver pushes the colliders apart.
     pub(crate) pushes: bool,
 }
 
@@ -76,7 +76,7 @@ fn key_of(edge: &ContactEdge) -> u64 {
 }
 
 impl ContactGraph {
-    /// Whether the app ever read it.
+    /// Whether the app ever read the graph.
     pub(crate) fn is_read(&self) -> bool {
         self.is_read.is_set()
     }
@@ -92,7 +92,7 @@ impl ContactGraph {
         self.by_collider.clone_from(by_collider);
     }
 
-    /// Removes the contacts of a collider that is gone. The last contacts take their places.
+    /// Removes the contacts of a despawned collider. The last contacts take their places.
     pub(crate) fn remove_collider(&mut self, collider: Entity) {
         while let Some(&place) = self.by_collider.get(&collider).and_then(|places| places.last()) {
             self.remove_at(place);
@@ -130,20 +130,22 @@ impl ContactGraph {
         (core::mem::take(&mut self.added), core::mem::take(&mut self.removed))
     }
 
-    /// Adds a pair of colliders, which becomes a contact after the broad phase of this step, or of the next
-    /// one if that is over. The contact lasts until the enlarged boxes of the colliders come apart.
+    /// Adds a pair of colliders. The pair becomes a contact after the broad phase of this step, or of the
+    /// next step if that phase is over. The contact lasts until the enlarged boxes of the colliders separate.
     ///
-    /// Returns `None` if the pair has a contact or was added already. The id is [`ContactId::PLACEHOLDER`],
-    /// as the contact gets its own when it is made. Bodies and flags of `contact_edge` are not used: they
-    /// follow from the colliders. No contact is made of a collider with itself or one of the same body, of
-    /// layers that do not interact, and of two without a dynamic or kinematic body, unless both have no body
-    /// and one is a sensor.
+    /// Returns `None` if the pair has a contact or was added already. The id is [`ContactId::PLACEHOLDER`]:
+    /// the contact gets its own id when it is created. Bodies and flags of `contact_edge` are not used; they
+    /// follow from the colliders.
+    ///
+    /// No contact is created between a collider and itself, between colliders of one body, between layers
+    /// that do not interact, and without a dynamic or kinematic body, unless neither collider has a body and
+    /// one is a sensor.
     pub fn add_edge(&mut self, contact_edge: ContactEdge) -> Option<ContactId> {
         self.add_edge_with(contact_edge, |_| ())
     }
 
-    /// The same. If `pair_callback` clears [`ContactPairFlags::GENERATE_CONSTRAINTS`], the colliders are not
-    /// pushed apart. Nothing else of the pair is used.
+    /// As [`add_edge`](Self::add_edge). If `pair_callback` clears [`ContactPairFlags::GENERATE_CONSTRAINTS`],
+    /// the solver does not push the colliders apart. Other changes to the pair are ignored.
     pub fn add_edge_with<F>(&mut self, contact_edge: ContactEdge, pair_callback: F) -> Option<ContactId>
     where
         F: FnMut(&mut ContactPair),
@@ -153,7 +155,7 @@ impl ContactGraph {
         self.add_edge_and_key_with(contact_edge, key, pair_callback)
     }
 
-    /// The same, with the key of the pair if it is known.
+    /// As [`add_edge_with`](Self::add_edge_with), with the key of the pair if it is known.
     pub fn add_edge_and_key_with<F>(
         &mut self,
         contact_edge: ContactEdge,
@@ -175,8 +177,8 @@ impl ContactGraph {
         Some(ContactId::PLACEHOLDER)
     }
 
-    /// Removes the contact of two colliders after the broad phase of this step, or of the next one. Returns
-    /// what it was. A collision that ends is reported.
+    /// Removes the contact of two colliders after the broad phase of this step, or of the next step. Returns
+    /// the contact. If it touched, the end of the collision is reported.
     ///
     /// The broad phase finds the pair again when one of the colliders moves.
     pub fn remove_edge(&mut self, entity1: Entity, entity2: Entity) -> Option<ContactEdge> {
@@ -184,7 +186,7 @@ impl ContactGraph {
         self.get_edge(entity1, entity2).cloned()
     }
 
-    /// The same, by the id of the contact.
+    /// As [`remove_edge`](Self::remove_edge), by the id of the contact.
     pub fn remove_edge_by_id(&mut self, _pair_key: &PairKey, id: ContactId) -> Option<ContactEdge> {
         let &ContactEdge { collider1, collider2, .. } = self.get_edge_by_id(id)?;
         self.remove_edge(collider1, collider2)
@@ -248,7 +250,7 @@ impl ContactGraph {
         self.by_key.contains_key(&pair_key.0)
     }
 
-    /// The pairs of which a body is awake, or none can sleep.
+    /// The pairs with an awake body, or without a body that can sleep.
     pub fn active_pairs(&self) -> &[ContactPair] {
         self.is_read.set();
         &self.active
@@ -260,12 +262,12 @@ impl ContactGraph {
         &self.sleeping
     }
 
-    /// The pairs of which a body is awake, or none can sleep.
+    /// The pairs with an awake body, or without a body that can sleep.
     pub fn iter_active(&self) -> impl Iterator<Item = &ContactPair> {
         self.active_pairs().iter()
     }
 
-    /// The pairs that touch, and of which a body is awake or none can sleep.
+    /// The touching pairs with an awake body, or without a body that can sleep.
     pub fn iter_active_touching(&self) -> impl Iterator<Item = &ContactPair> {
         self.active_pairs().iter().filter(|pair| pair.is_touching())
     }
@@ -275,7 +277,7 @@ impl ContactGraph {
         self.sleeping_pairs().iter()
     }
 
-    /// The pairs of sleeping bodies that touch.
+    /// The touching pairs of sleeping bodies.
     pub fn iter_sleeping_touching(&self) -> impl Iterator<Item = &ContactPair> {
         self.sleeping_pairs().iter().filter(|pair| pair.is_touching())
     }
@@ -292,7 +294,7 @@ impl ContactGraph {
         self.contact_edges_with(entity).filter_map(|edge| self.get_pair_by_edge(edge))
     }
 
-    /// The colliders whose boxes overlap that of a collider.
+    /// The colliders whose boxes overlap the box of a collider.
     pub fn entities_colliding_with(&self, entity: Entity) -> impl Iterator<Item = Entity> + '_ {
         self.contact_edges_with(entity)
             .map(move |edge| if edge.collider1 == entity { edge.collider2 } else { edge.collider1 })

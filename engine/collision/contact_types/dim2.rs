@@ -17,8 +17,8 @@ pub struct ContactManifold {
     pub friction: Scalar,
     /// The mixed coefficient of restitution.
     pub restitution: Scalar,
-    /// The speed of the second surface relative to the first that friction brings about, m/s, as of a
-    /// conveyor belt. Along the tangent, the normal turned clockwise. 0 unless
+    /// The speed of the second surface relative to the first that friction drives the bodies to, m/s, as on a
+    /// conveyor belt. It is along the tangent, which is the normal turned clockwise. 0 unless
     /// [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
     pub tangent_speed: Scalar,
 }
@@ -41,13 +41,13 @@ pub(super) fn tangent_impulse(normal: k::Vector, impulse: k::Vector) -> Scalar {
     k::TangentFrame::new(normal).project(impulse).x.adjust_precision()
 }
 
-/// The tangent along which a surface's speed is measured: right where the normal points up.
+/// The tangent along which surface speed is measured: it points right if the normal points up.
 fn tangent(normal: Vector) -> Vector {
     Vector::new(normal.y, -normal.x)
 }
 
 impl ContactManifold {
-    /// The velocity of the second surface relative to the first that friction brings about.
+    /// The velocity of the second surface relative to the first that friction drives the bodies to.
     pub(super) fn surface_velocity(&self) -> Vector {
         tangent(self.normal) * self.tangent_speed
     }

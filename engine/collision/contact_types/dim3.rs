@@ -19,8 +19,8 @@ pub struct ContactManifold {
     pub friction: Scalar,
     /// The mixed coefficient of restitution.
     pub restitution: Scalar,
-    /// The velocity of the second surface relative to the first that friction brings about, in the
-    /// world, m/s, as of a conveyor belt. 0 unless [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
+    /// The velocity of the second surface relative to the first that friction drives the bodies to, in the
+    /// world, m/s, as on a conveyor belt. 0 unless [`CollisionHooks`](crate::prelude::CollisionHooks) set it.
     pub tangent_velocity: Vector,
 }
 
@@ -36,7 +36,7 @@ impl ContactManifold {
         }
     }
 
-    /// Keeps at most four points: the deepest one, and those that span the largest area with it.
+    /// Keeps at most four points: the deepest point, and the points that span the largest area with it.
     pub fn prune_points(&mut self) {
         if self.points.len() <= ENOUGH {
             return;
@@ -70,7 +70,7 @@ pub(super) fn tangent_impulse(normal: k::Vector, impulse: k::Vector) -> Vector2 
 }
 
 impl ContactManifold {
-    /// The velocity of the second surface relative to the first that friction brings about.
+    /// The velocity of the second surface relative to the first that friction drives the bodies to.
     pub(super) fn surface_velocity(&self) -> Vector {
         self.tangent_velocity
     }

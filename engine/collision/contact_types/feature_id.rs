@@ -1,4 +1,4 @@
-//! [`PackedFeatureId`]: which vertex, edge or face of a shape makes a contact point.
+//! [`PackedFeatureId`]: the vertex, edge or face of a shape that makes a contact point.
 
 use bevy_reflect::Reflect;
 #[cfg(feature = "serialize")]
@@ -6,8 +6,9 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 /// A feature of a shape: its kind in the two highest bits, its number in the others.
 ///
-/// The engine only compares features of two steps, and has one number for both shapes of a point. It is in
-/// [`ContactPoint::feature_id1`](super::ContactPoint::feature_id1), as it is: the kind means nothing there.
+/// The engine only compares features of two steps, and has one number for both shapes of a point.
+/// [`ContactPoint::feature_id1`](super::ContactPoint::feature_id1) contains this number; the kind bits mean
+/// nothing there.
 #[derive(Copy, Clone, Debug, Hash, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -1,4 +1,4 @@
-//! What manifolds of both dimensions can do.
+//! Methods of contact manifolds in both dimensions.
 
 use super::{dim::ContactManifold, point::ContactPoint};
 use crate::math::Scalar;
@@ -14,8 +14,8 @@ impl ContactManifold {
         self.points.iter().fold(0.0, |max, point| max.max(point.normal_impulse))
     }
 
-    /// Copies the impulses that a step starts from, from those of `previous_contacts` that are the same
-    /// points: of the same known features, or both anchors nearer than `distance_threshold`.
+    /// Copies the warm start impulses of matching points in `previous_contacts`. Points match if their
+    /// features are known and equal, or if both anchors are nearer than `distance_threshold`.
     pub fn match_contacts(&mut self, previous_contacts: &[ContactPoint], distance_threshold: Scalar) {
         let near = distance_threshold * distance_threshold;
         for point in &mut self.points {

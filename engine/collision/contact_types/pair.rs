@@ -9,7 +9,7 @@ use bitflags::bitflags;
 use super::{dim::ContactManifold, point::ContactPoint};
 use crate::math::{Scalar, Vector};
 
-/// The id of a contact. The ids of contacts that are gone are used again.
+/// The id of a contact. The ids of removed contacts are used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -50,7 +50,7 @@ bitflags! {
     }
 }
 
-/// Two colliders whose boxes overlap: who they are, without their manifolds.
+/// Two colliders with overlapping boxes, without their manifolds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactEdge {
     /// The id of the contact.
@@ -63,7 +63,7 @@ pub struct ContactEdge {
     pub body1: Option<Entity>,
     /// The body of the second collider, if it has one in the simulation.
     pub body2: Option<Entity>,
-    /// The place of the [`ContactPair`] among the active or the sleeping pairs of the graph.
+    /// The index of the [`ContactPair`] among the active or the sleeping pairs of the graph.
     pub pair_index: usize,
     /// State bits.
     pub flags: ContactEdgeFlags,
@@ -115,12 +115,12 @@ bitflags! {
         const TOUCHING = 1 << 0;
         /// The boxes of the colliders are apart.
         const DISJOINT_AABB = 1 << 1;
-        /// The colliders began to touch in the last step.
+        /// The colliders started touching in the last step.
         const STARTED_TOUCHING = 1 << 2;
-        /// The colliders ceased to touch in the last narrow phase.
+        /// The colliders stopped touching in the last narrow phase.
         const STOPPED_TOUCHING = 1 << 3;
-        /// The solver pushes the bodies apart if the colliders touch: none is a sensor, and a
-        /// body is dynamic.
+        /// The solver pushes the bodies apart if the colliders touch: neither is a sensor, and a body is
+        /// dynamic.
         const GENERATE_CONSTRAINTS = 1 << 4;
         /// The contact began to generate constraints in the last step.
         const STARTED_GENERATING_CONSTRAINTS = 1 << 5;
@@ -133,7 +133,7 @@ bitflags! {
     }
 }
 
-/// Two colliders whose boxes overlap, with the manifolds in which they touch.
+/// Two colliders with overlapping boxes, and their contact manifolds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactPair {
     /// The id of the contact.
@@ -146,7 +146,7 @@ pub struct ContactPair {
     pub body1: Option<Entity>,
     /// The body of the second collider, if it has one in the simulation.
     pub body2: Option<Entity>,
-    /// The manifolds: one of two convex shapes, or several of meshes and compounds.
+    /// The manifolds: one for two convex shapes, or several for meshes and compounds.
     pub manifolds: Vec<ContactManifold>,
     /// State bits.
     pub flags: ContactPairFlags,
@@ -203,13 +203,13 @@ impl ContactPair {
         self.flags.contains(ContactPairFlags::DISJOINT_AABB)
     }
 
-    /// Whether the colliders began to touch in the last step, as known after the solver.
+    /// Whether the colliders started touching in the last step, as known after the solver.
     pub fn collision_started(&self) -> bool {
         self.flags.contains(ContactPairFlags::STARTED_TOUCHING)
     }
 
-    /// Whether the colliders ceased to touch in the last narrow phase. If their boxes came apart as well, the
-    /// pair is gone at once.
+    /// Whether the colliders stopped touching in the last narrow phase. If their boxes separated as well, the
+    /// pair is removed at once.
     pub fn collision_ended(&self) -> bool {
         self.flags.contains(ContactPairFlags::STOPPED_TOUCHING)
     }

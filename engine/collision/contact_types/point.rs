@@ -15,22 +15,22 @@ pub struct ContactPoint {
     pub point: Vector,
     /// How deep the surfaces overlap, in metres; negative if they are apart.
     pub penetration: Scalar,
-    /// The impulse along the normal over the whole step, N·s. Under a resting body it is weight times the
-    /// length of the step.
+    /// The impulse along the normal over the whole step, N·s. The impulse under a resting body is its weight
+    /// times the length of the step.
     ///
-    /// Sums over the substeps are kept while a collider has
+    /// Impulses are summed over the substeps while a collider has
     /// [`CollisionEventsEnabled`](crate::prelude::CollisionEventsEnabled),
     /// [`CollidingEntities`](crate::prelude::CollidingEntities) or hooks that change contacts, and from the
     /// step after a system first asked [`Collisions`](crate::prelude::Collisions). Without sums this is the
-    /// impulse of the last substep times their number.
+    /// impulse of the last substep times the number of substeps.
     pub normal_impulse: Scalar,
-    /// The speed at which the surfaces part along the normal, m/s; negative if they approach. Before the
-    /// solver it is that of the impact, after it what is left.
+    /// The separation speed of the surfaces along the normal, m/s; negative if they approach. Before the
+    /// solver it is the impact speed, after the solver the remaining speed.
     pub normal_speed: Scalar,
     /// The normal impulse that the next step starts from, N·s.
     pub warm_start_normal_impulse: Scalar,
-    /// This point's part of the friction impulse that the next step starts from, along the tangent (2D) or
-    /// both tangents (3D), N·s.
+    /// The share of this point in the friction impulse that the next step starts from, along the tangent (2D)
+    /// or both tangents (3D), N·s.
     pub warm_start_tangent_impulse: TangentVector,
     /// The feature of the first shape.
     pub feature_id1: PackedFeatureId,

@@ -1,4 +1,4 @@
-//! [`SingleContact`]: the one contact that a query gives.
+//! [`SingleContact`]: the result of a contact query.
 
 use crate::math::{Scalar, Vector};
 use crate::physics_transform::{Position, Rotation};
@@ -40,12 +40,14 @@ impl SingleContact {
         position.0 + *rotation * self.local_point2
     }
 
-    /// The normal from the first collider to the second, in the world. `rotation` is that of the first.
+    /// The normal from the first collider to the second, in the world. Takes the rotation of the first
+    /// collider.
     pub fn global_normal1(&self, rotation: &Rotation) -> Vector {
         *rotation * self.local_normal1
     }
 
-    /// The normal from the second collider to the first, in the world. `rotation` is that of the second.
+    /// The normal from the second collider to the first, in the world. Takes the rotation of the second
+    /// collider.
     pub fn global_normal2(&self, rotation: &Rotation) -> Vector {
         *rotation * self.local_normal2
     }
@@ -55,7 +57,7 @@ impl SingleContact {
         *self = self.flipped();
     }
 
-    /// The same with the colliders exchanged.
+    /// The same contact with the colliders exchanged.
     pub fn flipped(&self) -> Self {
         let Self { local_point1, local_point2, local_normal1, local_normal2, penetration } = *self;
         Self::new(local_point2, local_point1, local_normal2, local_normal1, penetration)

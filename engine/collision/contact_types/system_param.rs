@@ -15,18 +15,18 @@ use crate::{
     },
 };
 
-/// The pairs of colliders that touch, as a system parameter.
+/// The touching pairs of colliders, as a system parameter.
 ///
-/// Colliders touch from the step in which their surfaces meet, or push each other, until the surfaces are
-/// 2 cm (times the length unit) apart. Sensors touch while they overlap.
+/// Colliders touch from the step in which their surfaces meet or push each other, until the surfaces are 2 cm
+/// (times the length unit) apart. Sensors touch while they overlap.
 ///
-/// The points of contacts are complete from [`NarrowPhaseSystems::Last`] on. Impulses, and pairs that begin
-/// to touch in the step, are known from [`SolverSystems::StoreContactImpulses`] on; in between, all pairs
-/// with points count as touching. Systems that run between steps read those of the last step, without
-/// colliders that were despawned since. Contacts are made when they are read, once for all readers; a step in
-/// which nothing is read costs nothing.
+/// Contact points are complete from [`NarrowPhaseSystems::Last`] on. Impulses, and pairs that start to touch
+/// in the step, are known from [`SolverSystems::StoreContactImpulses`] on; in between, all pairs with points
+/// count as touching. Systems that run between steps read the contacts of the last step, without colliders
+/// that were despawned since. A contact is built when it is first read, once for all readers; a step without
+/// reads costs nothing.
 ///
-/// To be told of changes, use [`CollisionStart`](crate::prelude::CollisionStart) and
+/// To react to changes, use [`CollisionStart`](crate::prelude::CollisionStart) and
 /// [`CollisionEnd`](crate::prelude::CollisionEnd).
 ///
 /// ```
@@ -65,9 +65,9 @@ impl Collisions<'_> {
         }
     }
 
-    /// All contacts, also of colliders that are near each other and do not touch. It is made anew in each
-    /// step in which it is read; [`get`](Self::get) and [`collisions_with`](Self::collisions_with) make only
-    /// the contacts asked for.
+    /// All contacts, including contacts of near colliders that do not touch. The graph is built again in each
+    /// step in which it is read; [`get`](Self::get) and [`collisions_with`](Self::collisions_with) build only
+    /// the requested contacts.
     pub fn graph(&self) -> &ContactGraph {
         self.views.graph(self.source())
     }
@@ -90,7 +90,7 @@ impl Collisions<'_> {
         first.zip(second).is_some_and(|(first, second)| self.contains(first, second))
     }
 
-    /// All pairs that touch, in the order of ids.
+    /// All touching pairs, in order of ids.
     pub fn iter(&self) -> impl Iterator<Item = &ContactPair> {
         let source = self.source();
         let touching = move |id: &u32| source.is_touching(*id);
@@ -103,13 +103,13 @@ impl Collisions<'_> {
             .map(move |id| self.views.pair(id, source))
     }
 
-    /// The pairs of a collider that touch, in the order of ids.
+    /// The touching pairs of a collider, in order of ids.
     pub fn collisions_with(&self, entity: Entity) -> impl Iterator<Item = &ContactPair> {
         let source = self.source();
         source.touching(entity).into_iter().map(move |id| self.views.pair(id, source))
     }
 
-    /// The colliders that touch a collider, in the order of ids.
+    /// The colliders that touch a collider, in order of ids.
     pub fn entities_colliding_with(&self, entity: Entity) -> impl Iterator<Item = Entity> + '_ {
         let source = self.source();
         source.touching(entity).into_iter().map(move |id| {

@@ -1,4 +1,4 @@
-//! Contacts of the kernel as the app sees them, made when they are read.
+//! Contacts of the kernel in the public format, built when they are read.
 
 use bevy_ecs::prelude::*;
 use kernel::{
@@ -23,24 +23,24 @@ use crate::{
 
 /// The contacts that were read since contacts last changed.
 ///
-/// Readers share the tables, so each contact is filled once, by the first of them. As long as nothing is
-/// read, nothing is allocated.
+/// Readers share the tables, so each contact is built once, by its first reader. Without reads nothing is
+/// allocated.
 #[derive(Resource, Default)]
 pub(crate) struct ContactViews {
     /// By contact id.
     pairs: OnceLock<Box<[OnceLock<Box<ContactPair>>]>>,
     graph: OnceLock<Box<ContactGraph>>,
-    /// Whether any system ever asked for contacts.
+    /// Whether any system ever read contacts.
     asked: Asked,
 }
 
-/// Forgets what was read. Piped behind each system that changes contacts, so that no system of the app
-/// reads in between.
+/// Drops the contacts that were read. Piped behind each system that changes contacts, so that no system of
+/// the app reads in between.
 pub(crate) fn forget_views(mut views: ResMut<ContactViews>) {
     views.bypass_change_detection().forget();
 }
 
-/// What contacts are made of.
+/// The tables from which contacts are built.
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     pub(crate) bodies: &'a Bodies,
@@ -51,19 +51,19 @@ pub(crate) struct Source<'a> {
 }
 
 impl ContactViews {
-    /// Forgets what was read.
+    /// Drops the contacts that were read.
     pub(crate) fn forget(&mut self) {
         if self.pairs.get().is_some() || self.graph.get().is_some() {
             (self.pairs, self.graph) = Default::default();
         }
     }
 
-    /// Notes that a system asks for contacts: from the next step on, impulses are summed over the substeps.
+    /// Records that a system reads contacts: from the next step on, impulses are summed over the substeps.
     pub(crate) fn note_reader(&self) {
         self.asked.note();
     }
 
-    /// Whether any system ever asked for contacts.
+    /// Whether any system ever read contacts.
     pub(crate) fn has_readers(&self) -> bool {
         self.asked.is_set()
     }
@@ -198,7 +198,7 @@ impl<'a> Source<'a> {
         shown
     }
 
-    /// The centre of mass of a side's body, or the place of a collider without one.
+    /// The centre of mass of a side's body, or the position of a collider without a body.
     fn center(self, contact: &Contact, side: usize) -> k::WorldVector {
         match contact.bodies[side] {
             NONE => self.colliders.table.poses[contact.colliders[side] as usize].position,
@@ -219,7 +219,7 @@ impl<'a> Source<'a> {
         let parting = b.linear + b.angular.cross(anchors[1]) - a.linear - a.angular.cross(anchors[0]);
         let [anchor1, anchor2] = anchors.map(vector_from_kernel);
         let impulse = p.impulse.adjust_precision();
-        // Before anything read contacts, no sums were kept.
+        // Sums are kept only after a system first read contacts.
         let total = if p.total_impulse > 0.0 {
             p.total_impulse.adjust_precision()
         } else {
@@ -240,16 +240,16 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Contacts that hooks have changed, for the kernel.
+/// Contacts changed by hooks, converted for the kernel.
 impl Source<'_> {
-    /// The manifolds of a pair, which was made of this contact.
+    /// The manifolds of a pair that was built from this contact.
     pub(crate) fn manifolds_to_kernel(self, id: u32, pair: &ContactPair) -> Vec<(Manifold, ManifoldSurface)> {
         let contact = self.contacts.table.get(id);
         let old = || core::iter::once(&contact.manifold).chain(self.contacts.table.extra_of(contact));
         let is_solved = pair.flags.contains(ContactPairFlags::GENERATE_CONSTRAINTS);
         let convert = |manifold: &ContactManifold| {
             let normal = vector_to_kernel(manifold.normal);
-            // What the app cannot see comes from the old manifold that faces the same way.
+            // Data that the app cannot see comes from the old manifold with the most similar normal.
             let like = |m: &&Manifold| m.normal.dot(normal);
             let from = old().filter(|m| m.count > 0).max_by(|a, b| like(a).total_cmp(&like(b)));
             let mut to = Manifold { normal, count: 0, ..from.copied().unwrap_or_default() };

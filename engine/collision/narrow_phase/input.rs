@@ -1,4 +1,4 @@
-//! What the narrow phase is given.
+//! The input of the narrow phase.
 
 use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
@@ -17,11 +17,11 @@ use crate::{
     schedule::Physics,
 };
 
-/// Prediction distance of contacts at rest, times the length unit. With less, stacks lose contact points.
-/// With more, contacts that never touch are computed.
+/// Prediction distance of contacts at rest, times the length unit. With a smaller value stacks lose contact
+/// points. With a larger one contacts that never touch are computed.
 const SPECULATIVE: f32 = (4.0 * LINEAR_SLOP) as f32;
-/// Maximum relative motion of two surfaces for which a manifold is recycled, times the length unit. With
-/// more, contacts lag behind rolling bodies. With less, stacks jitter and steps take longer.
+/// Maximum relative motion of two surfaces for which a manifold is recycled, times the length unit. With a
+/// larger value contacts lag behind rolling bodies. With a smaller one stacks jitter and steps take longer.
 const RECYCLE: f32 = (10.0 * LINEAR_SLOP) as f32;
 
 /// Settings of the narrow phase.

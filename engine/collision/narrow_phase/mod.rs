@@ -34,8 +34,8 @@ pub struct NarrowPhaseConfig {
     /// [`PhysicsLengthUnit`](crate::dynamics::solver::PhysicsLengthUnit). 0.005 by default. With 0 resting
     /// contacts flicker.
     pub contact_tolerance: Scalar,
-    /// Whether contact points keep the impulses of the same points in the last step. True by default. Without
-    /// it stacks sag.
+    /// Whether contact points start from the impulses of the same points in the last step. True by default.
+    /// Without it stacks sag.
     pub match_contacts: bool,
 }
 

@@ -26,8 +26,8 @@ pub(in crate::debug_render) fn frame(position: Vector, rotation: Rotation) -> Af
     Affine3A::from_rotation_translation(Quat::from_rotation_z(rotation.as_radians() as f32), point(position))
 }
 
-/// The frame of an entity as it is drawn, with a rotation of its own and without scale. Lines are drawn at
-/// z = 0, over all meshes.
+/// The frame in which an entity is drawn, with the given rotation and without scale. It is at z = 0, so that
+/// lines are drawn over all meshes.
 pub(in crate::debug_render) fn drawn_frame(transform: &GlobalTransform, rotation: Quat) -> Affine3A {
     Affine3A::from_rotation_translation(rotation, transform.translation().with_z(0.0))
 }

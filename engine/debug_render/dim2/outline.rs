@@ -1,4 +1,4 @@
-//! Outlines of the shapes that both dimensions have with different lines, and of those that only 2D has.
+//! Outlines of shapes that differ between dimensions, and of shapes that only 2D has.
 
 use bevy_math::{Affine3A, Vec2, Vec3};
 
@@ -22,7 +22,7 @@ pub(in crate::debug_render) fn place(pose: &Pose) -> Affine3A {
     frame(pose.translation, Rotation { cos: pose.rotation.re, sin: pose.rotation.im })
 }
 
-/// Adds the outline of a shape. Returns whether it is known.
+/// Adds the outline of a shape. Returns whether the shape is known.
 pub(in crate::debug_render) fn add_of_dimension(shape: &TypedShape<'_>, lines: &mut Strips) -> bool {
     match shape {
         TypedShape::Ball(s) => polygon(&[Vector::ZERO], s.radius, lines),

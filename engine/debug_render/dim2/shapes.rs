@@ -9,7 +9,7 @@ fn v(x: Scalar, y: Scalar) -> Vector {
     Vector::new(x, y)
 }
 
-/// Names, colliders, and how far their outlines may end before their boxes, in metres.
+/// Names, colliders, and how far inside their boxes the outlines may end, in metres.
 pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider, f32)> {
     let hull = vec![v(0.0, 0.0), v(2.0, 0.2), v(2.5, 1.0), v(1.0, 2.0), v(-0.5, 1.0)];
     vec![
@@ -27,7 +27,7 @@ pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider, f32)> {
     ]
 }
 
-/// The shape that a collider is the rounded one of, and the radius, where it must be known.
+/// The shape that a rounded collider is built on, and its radius, where it must be known.
 pub(in crate::debug_render) fn core_of(collider: &Collider) -> (Collider, Scalar) {
     (collider.clone(), 0.0)
 }

@@ -26,7 +26,7 @@ pub(in crate::debug_render) fn frame(position: Vector, rotation: Rotation) -> Af
     Affine3A::from_rotation_translation(rotation.0.f32(), point(position))
 }
 
-/// The frame of an entity as it is drawn, with a rotation of its own and without scale.
+/// The frame in which an entity is drawn, with the given rotation and without scale.
 pub(in crate::debug_render) fn drawn_frame(transform: &GlobalTransform, rotation: Quat) -> Affine3A {
     Affine3A::from_rotation_translation(rotation, transform.translation())
 }

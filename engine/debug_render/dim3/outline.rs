@@ -1,4 +1,4 @@
-//! Outlines of the shapes that both dimensions have with different lines, and of those that only 3D has.
+//! Outlines of shapes that differ between dimensions, and of shapes that only 3D has.
 
 use bevy_math::{Affine3A, Quat, Vec2, Vec3};
 use core::f32::consts::{PI, TAU};
@@ -22,7 +22,7 @@ pub(in crate::debug_render) fn place(pose: &Pose) -> Affine3A {
     frame(pose.translation, Rotation(pose.rotation))
 }
 
-/// Adds the outline of a shape. Returns whether it is known.
+/// Adds the outline of a shape. Returns whether the shape is known.
 pub(in crate::debug_render) fn add_of_dimension(shape: &TypedShape<'_>, lines: &mut Strips) -> bool {
     match shape {
         TypedShape::Ball(s) => ball(s.radius as f32, lines),
@@ -160,7 +160,7 @@ fn round_triangle(corners: [Vec3; 3], radius: f32, lines: &mut Strips) {
     round_faces(&[(corners.to_vec(), normal), (back.to_vec(), -normal)], radius, lines);
 }
 
-/// The faces of a convex solid, moved out by a radius, and the arcs between the corners of neighbours.
+/// The faces of a convex solid, moved outward by a radius, and the arcs between the corners of neighbours.
 fn round_faces(faces: &[(Vec<Vec3>, Vec3)], radius: f32, lines: &mut Strips) {
     for (i, (corners, normal)) in faces.iter().enumerate() {
         lines.push_closed(corners.iter().map(|corner| *corner + *normal * radius));
@@ -180,11 +180,11 @@ fn round_faces(faces: &[(Vec<Vec3>, Vec3)], radius: f32, lines: &mut Strips) {
     }
 }
 
-/// The arc from one face's normal to the other's, around the edge between them, to whose outer side
-/// `side` points.
+/// The arc from one face's normal to the other's, around the edge between them. `side` points outward from
+/// the edge.
 fn arc_between(from: Vec3, to: Vec3, side: Vec3, radius: f32) -> Vec<Vec3> {
     let angle = Vec2::new(to.dot(from), to.dot(side)).to_angle();
-    // Both faces of a flat solid point away from each other.
+    // The two faces of a flat solid point away from each other.
     let angle = if angle.abs() > 0.999 * PI { PI } else { angle };
     let arc = arc(Vec2::ZERO, radius, 0.0, angle);
     arc.into_iter().map(|p| from * p.x + side * p.y).collect()

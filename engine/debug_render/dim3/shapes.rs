@@ -10,14 +10,14 @@ fn v(x: Scalar, y: Scalar, z: Scalar) -> Vector {
     Vector::new(x, y, z)
 }
 
-/// The part of a radius by which an outline may end before a tilted capsule: three circles at right angles
-/// reach at least √(2/3) of the radius in every direction.
+/// The part of a radius by which the outline of a tilted capsule may end inside its box: three circles at
+/// right angles reach at least √(2/3) of the radius in every direction.
 const THREE_CIRCLES: f32 = 0.1836;
 
-/// The same for a rounded edge or corner between lines that are √½ of the radius from its middle.
+/// The same part for a rounded edge or corner between lines at √½ of the radius from its middle.
 const ROUNDED_EDGE: f32 = 0.2929;
 
-/// Names, colliders, and how far their outlines may end before their boxes, in metres.
+/// Names, colliders, and how far inside their boxes the outlines may end, in metres.
 pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider, f32)> {
     let part = |i: u32, factor: u32| (i * factor % 23) as Scalar / 11.0 - 1.0;
     let hull: Vec<Vector> = (0..24).map(|i| v(part(i, 5), part(i, 7), part(i, 11))).collect();
@@ -69,8 +69,8 @@ pub(in crate::debug_render) fn shapes() -> Vec<(&'static str, Collider, f32)> {
     ]
 }
 
-/// The shape that a collider is the rounded one of, and the radius. Parry is 5 mm off for points around
-/// rounded cylinders and cones, and exact for sharp ones.
+/// The shape that a rounded collider is built on, and its radius. Parry is 5 mm off for points around rounded
+/// cylinders and cones, and exact for sharp ones.
 pub(in crate::debug_render) fn core_of(collider: &Collider) -> (Collider, Scalar) {
     let shape = collider.shape_scaled();
     if let Some(round) = shape.as_round_cylinder() {

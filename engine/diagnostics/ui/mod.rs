@@ -15,13 +15,14 @@ use bevy_ui::{
     Val, widget::Text,
 };
 
-/// What [`PhysicsDiagnosticsUiPlugin`] shows.
+/// Settings of [`PhysicsDiagnosticsUiPlugin`].
 #[derive(Resource, Debug, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct PhysicsDiagnosticsUiSettings {
     /// Whether the panel is shown. Default: `true`.
     pub enabled: bool,
-    /// Whether times are smoothed over the last steps, instead of those of the last step. Default: `true`.
+    /// Whether times are smoothed over the last steps. If false, times of the last step are shown. Default:
+    /// `true`.
     pub show_average_times: bool,
 }
 
@@ -39,12 +40,12 @@ pub struct PhysicsDiagnosticsUiNode;
 #[derive(Component)]
 struct Value(&'static DiagnosticPath);
 
-/// Number of rows that the panel was built with.
+/// Number of rows of the panel.
 #[derive(Component)]
 struct Rows(usize);
 
-/// Spawns the panel, and again when more timers and counters were registered. Despawns it when
-/// it is disabled.
+/// Spawns the panel, and rebuilds it when more timers and counters are registered. Despawns the panel when it
+/// is disabled.
 fn build_panel(
     settings: Res<PhysicsDiagnosticsUiSettings>,
     registered: Res<Registered>,
@@ -103,7 +104,7 @@ fn text(text: String, size: f32, color: Color) -> impl Bundle {
     (Text(text), TextFont { font_size: FontSize::Px(size), ..TextFont::default() }, TextColor(color))
 }
 
-/// The paths by their heading, in the order in which the headings were registered.
+/// The paths grouped by heading, in the order in which the headings were registered.
 fn groups(paths: &[&'static DiagnosticPath]) -> Vec<(String, Vec<&'static DiagnosticPath>)> {
     let mut groups: Vec<(String, Vec<_>)> = Vec::new();
     for &path in paths {
@@ -116,12 +117,12 @@ fn groups(paths: &[&'static DiagnosticPath]) -> Vec<(String, Vec<&'static Diagno
     groups
 }
 
-/// The heading above a path: its folder in words, without the name of the engine.
+/// The heading above a path: its folder in words, without the engine's name.
 fn heading(path: &DiagnosticPath) -> String {
     let parts: Vec<&str> = path.components().collect();
     match &parts[..parts.len().saturating_sub(1)] {
         ["avian"] => "Whole step".into(),
-        // The path is Avian's. Nothing but picking is there.
+        // The path is Avian's. Only picking uses this folder.
         ["avian", "physics"] => "Picking".into(),
         ["avian", folders @ ..] | folders => words(&folders.join(", ")),
     }
@@ -132,7 +133,7 @@ fn name(path: &DiagnosticPath) -> String {
     words(path.components().last().unwrap_or_default())
 }
 
-/// An identifier in words, the first one with a capital.
+/// An identifier in words, the first with a capital letter.
 fn words(identifier: &str) -> String {
     let words = identifier.replace('_', " ");
     let mut letters = words.chars();
@@ -153,7 +154,7 @@ fn update_rows(
     }
 }
 
-/// The value of a diagnostic: times with two digits, counters as they are.
+/// The displayed value of a diagnostic: times with two digits, counters unchanged.
 fn shown(diagnostic: &Diagnostic, is_smoothed: bool) -> String {
     if diagnostic.suffix.is_empty() {
         return diagnostic.value().map(|value| format!("{value:.0}")).unwrap_or_default();

@@ -1,20 +1,20 @@
-//! Continuous collision detection: what is fast or thin collides too.
+//! Continuous collision detection (CCD): fast bodies and thin shapes do not pass through each other.
 //!
 //! A step moves a body by its velocity. A small fast body may be in front of a wall in one step and behind it
-//! in the next. Three things prevent that:
+//! in the next. Three mechanisms prevent that:
 //!
-//! - **Speculative contacts**, for all bodies: contacts of what the motion of the step brings together, made
-//!   before the shapes touch. The solver lets the gap close and no further, so that bounces and friction are
-//!   those of an impact. What the motion does not bring together is not affected. [`SpeculativeMargin`]
-//!   limits how far ahead a body looks.
-//! - **A sweep against what does not move**, for all bodies that move farther in a step than half the ball
-//!   within their collider: one that got into or through static geometry is put back to the time of the
-//!   impact. The next step continues there with the contact.
-//! - **[`SweptCcd`]**, for bodies with the component: the same against kinematic and dynamic bodies.
+//! - **Speculative contacts**, for all bodies: contacts between shapes that the motion of the step brings
+//!   together, created before the shapes touch. The solver lets the gap close and no further, and bounces and
+//!   friction are as in an impact. Other shapes are not affected. [`SpeculativeMargin`] limits the distance
+//!   of prediction.
+//! - **A sweep against static geometry**, for all bodies that move farther in a step than half the radius of
+//!   the ball inscribed in their collider. A body that entered or crossed static geometry is moved back to
+//!   the time of impact. The next step continues there with the contact.
+//! - **[`SweptCcd`]**, for bodies with the component: the same sweep against kinematic and dynamic bodies.
 //!
-//! A body that is put back loses the rest of the step: for a moment it seems slower. What it would have hit
-//! later in the same step, it hits in the next one. What joints hold to it is put back with it, so that
-//! they do not open.
+//! A body that is moved back loses the rest of the step and seems slower for a moment. Later obstacles of the
+//! same step are hit in the next step. Bodies connected by joints are moved back together, and the joints do
+//! not open.
 //!
 //! Bodies of 5 cm that spin at 20 rad/s, shot at a wall of 1 cm or more at 64 Hz:
 //!
@@ -40,12 +40,12 @@ use crate::math::Scalar;
 /// Maximum distance at which contacts of a body or collider are predicted, in metres, so that the body stops
 /// at a surface before passing it.
 ///
-/// A *speculative* contact exists while the shapes are still separated. The solver lets them close the gap
-/// within the step and no further. The margin never exceeds the motion of both in one step, so a large one
-/// costs little. But a body may be stopped by a surface that it would have slid past: a *ghost collision*,
-/// which a smaller margin avoids.
+/// A *speculative* contact exists while the shapes are still separated. The solver lets the shapes close the
+/// gap within the step and no further. The margin never exceeds the motion of both shapes in one step, so a
+/// large margin costs little. But it may stop a body at a surface that the body would have slid past: a
+/// *ghost collision*. A smaller margin avoids ghost collisions.
 ///
-/// Read from the collider, else from its body, else
+/// Read from the collider, otherwise from its body, otherwise from
 /// [`NarrowPhaseConfig::default_speculative_margin`](crate::collision::narrow_phase::NarrowPhaseConfig::default_speculative_margin).
 ///
 /// ```
@@ -63,10 +63,10 @@ use crate::math::Scalar;
 pub struct SpeculativeMargin(pub Scalar);
 
 impl SpeculativeMargin {
-    /// No contact before the shapes touch.
+    /// Contacts form only when the shapes touch.
     pub const ZERO: Self = Self(0.0);
 
-    /// The full motion of the shapes in a step.
+    /// The margin is the full motion of the shapes in a step.
     pub const MAX: Self = Self(Scalar::MAX);
 }
 
@@ -80,15 +80,15 @@ pub struct SweptCcdSystems;
 #[deprecated(since = "0.4.0", note = "renamed to `SweptCcdSystems`")]
 pub type SweptCcdSet = SweptCcdSystems;
 
-/// Sweeps a body against kinematic and dynamic bodies, so that none passes the other, however fast.
+/// Sweeps a body against kinematic and dynamic bodies, so that it does not pass through them at any speed.
 ///
-/// Both bodies are swept from where they were to where they are at the end of the step. If they meet, both go
-/// back to where they met, and collide in the next step. Layers and sensors count as for contacts. All
-/// colliders of both bodies are swept.
+/// Both bodies are swept from their poses at the start of the step to their poses at its end. If they meet,
+/// both move back to the time of impact and collide in the next step. All colliders of both bodies are swept.
+/// Layers and sensors are respected as for contacts.
 ///
-/// Most bodies do not need it: contacts are predicted by default, and no body passes what is static. It is
-/// for bodies whose [`SpeculativeMargin`] is small, and where something must not be missed also if a
-/// collision within the step gives it another way.
+/// Most bodies do not need this component: contacts are predicted by default, and no body passes through
+/// static geometry. It is for bodies with a small [`SpeculativeMargin`], and for bodies that must not miss an
+/// obstacle even if a collision within the step deflects them.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -104,13 +104,15 @@ pub type SweptCcdSet = SweptCcdSystems;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, Default, PartialEq, Clone)]
 pub struct SweptCcd {
-    /// Whether turning counts.
+    /// Whether rotation is swept.
     pub mode: SweepMode,
-    /// Whether the body is swept against dynamic bodies, or kinematic ones alone. True by default.
+    /// Whether the body is also swept against dynamic bodies, not only against kinematic ones. True by
+    /// default.
     pub include_dynamic: bool,
-    /// Two bodies whose relative velocities are below both thresholds are not swept. In m/s, 0 by default.
+    /// Linear threshold: bodies whose relative velocities are below both thresholds are not swept. In m/s, 0
+    /// by default.
     pub linear_threshold: Scalar,
-    /// The threshold of turning, in rad/s, 0 by default.
+    /// Angular threshold, in rad/s. 0 by default.
     pub angular_threshold: Scalar,
 }
 
@@ -121,18 +123,18 @@ impl Default for SweptCcd {
 }
 
 impl SweptCcd {
-    /// Sweeps without turning.
+    /// Sweeps translation only.
     pub const LINEAR: Self = Self::new_with_mode(SweepMode::Linear);
 
-    /// Sweeps with turning.
+    /// Sweeps translation and rotation.
     pub const NON_LINEAR: Self = Self::new_with_mode(SweepMode::NonLinear);
 
-    /// Sweeps with a mode, against all bodies and at all velocities.
+    /// A sweep with a mode, against all bodies and at all velocities.
     pub const fn new_with_mode(mode: SweepMode) -> Self {
         Self { mode, include_dynamic: true, linear_threshold: 0.0, angular_threshold: 0.0 }
     }
 
-    /// Sweeps only bodies that are faster against each other than one of the thresholds, in m/s and rad/s.
+    /// Sweeps only pairs of bodies whose relative velocity exceeds one of the thresholds, in m/s and rad/s.
     pub const fn with_velocity_threshold(mut self, linear: Scalar, angular: Scalar) -> Self {
         self.linear_threshold = linear;
         self.angular_threshold = angular;
@@ -146,15 +148,15 @@ impl SweptCcd {
     }
 }
 
-/// Which motion a body with [`SweptCcd`] is swept along.
+/// The motion that is swept for a body with [`SweptCcd`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq, Clone)]
 pub enum SweepMode {
-    /// Translation. What turns fast may be missed.
+    /// Translation. Bodies that rotate fast may be missed.
     Linear,
-    /// Translation and turning, which costs more.
+    /// Translation and rotation, which costs more.
     #[default]
     NonLinear,
 }

@@ -1,4 +1,4 @@
-//! The plugin of sweeps.
+//! The plugin of continuous collision detection.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel};
@@ -13,8 +13,8 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Sweeps fast bodies against what does not move, and bodies with [`SweptCcd`](super::SweptCcd)
-/// against what moves.
+/// Sweeps fast bodies against static geometry, and bodies with [`SweptCcd`](super::SweptCcd) against moving
+/// bodies.
 #[derive(Debug, Default)]
 pub struct CcdPlugin;
 

@@ -26,14 +26,14 @@ use crate::{
     threads::Threads,
 };
 
-/// Buffers of sweeps, kept for their memory.
+/// Buffers of sweeps, reused between steps.
 #[derive(Default)]
 pub(crate) struct Buffers {
     workers: Vec<SweepBuffers>,
     swept: Vec<(u32, Swept)>,
 }
 
-/// What tells whether and how bodies are swept.
+/// Resources that decide whether and how bodies are swept.
 #[derive(SystemParam)]
 pub(crate) struct Settings<'w> {
     substeps: Res<'w, OwnSubstepSystems>,
@@ -42,7 +42,7 @@ pub(crate) struct Settings<'w> {
     time: Res<'w, Time<Physics>>,
 }
 
-/// Puts bodies back that got into something in the substeps.
+/// Moves bodies that penetrated an obstacle during the substeps back to the time of impact.
 pub(crate) fn sweep_bodies(
     swept: Query<(&BodyId, &SweptCcd)>,
     shapes: Query<&Collider>,
@@ -52,7 +52,7 @@ pub(crate) fn sweep_bodies(
     mut buffers: Local<Buffers>,
     mut diagnostics: ResMut<SolverDiagnostics>,
 ) {
-    // What no contact stops, no sweep stops.
+    // Without contact response there are no sweeps.
     if !settings.substeps.solves || settings.response.is_none_or(|response| !response.0) {
         return;
     }

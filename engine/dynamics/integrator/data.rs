@@ -1,4 +1,4 @@
-//! The accelerations of a body that wait for the next step.
+//! The accelerations of a body that are accumulated for the next step.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -7,11 +7,11 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::{AngularVector, Scalar, Vector};
 
-/// Accelerations of a body in world axes, summed up for the next step.
+/// Accelerations of a body in world axes, accumulated for the next step.
 ///
-/// [`Forces`](crate::dynamics::rigid_body::forces::Forces) adds to them. An app may write them by hand, which
-/// wakes the body. The next step applies them in each of its substeps, and sets them to zero at its end.
-/// Gravity, damping and constant forces are added by the solver itself and do not show here.
+/// [`Forces`](crate::dynamics::rigid_body::forces::Forces) adds to them. An app may also write them directly,
+/// which wakes the body. The next step applies them in each of its substeps and sets them to zero at its end.
+/// Gravity, damping and constant forces are added by the solver and are not included here.
 ///
 /// ```
 /// # use avian::{dynamics::integrator::VelocityIntegrationData, math::Vector, prelude::*};
@@ -36,10 +36,10 @@ pub struct VelocityIntegrationData {
     /// Angular acceleration, in rad/s².
     pub angular_increment: AngularVector,
     /// A factor of linear velocity per substep, for apps that integrate velocities themselves. The engine
-    /// takes the damping from [`LinearDamping`](crate::dynamics::rigid_body::LinearDamping).
+    /// itself uses [`LinearDamping`](crate::dynamics::rigid_body::LinearDamping).
     pub linear_damping_rhs: Scalar,
     /// A factor of angular velocity per substep, for apps that integrate velocities themselves. The engine
-    /// takes the damping from [`AngularDamping`](crate::dynamics::rigid_body::AngularDamping).
+    /// itself uses [`AngularDamping`](crate::dynamics::rigid_body::AngularDamping).
     pub angular_damping_rhs: Scalar,
 }
 
@@ -56,14 +56,14 @@ impl VelocityIntegrationData {
         self.angular_increment += acceleration;
     }
 
-    /// Sets the linear factor of a damping of `damping_coefficient` 1/s in substeps of `delta_secs`:
-    /// 1 / (1 + c h).
+    /// Sets the linear factor for a damping coefficient c of `damping_coefficient` 1/s in substeps of h =
+    /// `delta_secs` seconds: 1 / (1 + c h).
     pub fn update_linear_damping_rhs(&mut self, damping_coefficient: Scalar, delta_secs: Scalar) {
         self.linear_damping_rhs = 1.0 / (1.0 + damping_coefficient * delta_secs);
     }
 
-    /// Sets the angular factor of a damping of `damping_coefficient` 1/s in substeps of `delta_secs`:
-    /// 1 / (1 + c h).
+    /// Sets the angular factor for a damping coefficient c of `damping_coefficient` 1/s in substeps of h =
+    /// `delta_secs` seconds: 1 / (1 + c h).
     pub fn update_angular_damping_rhs(&mut self, damping_coefficient: Scalar, delta_secs: Scalar) {
         self.angular_damping_rhs = 1.0 / (1.0 + damping_coefficient * delta_secs);
     }

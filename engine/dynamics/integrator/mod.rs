@@ -63,16 +63,16 @@ impl Gravity {
     pub const ZERO: Gravity = Gravity(Vector::ZERO);
 }
 
-/// Leaves the velocity of this body to the app: gravity, forces, damping and speed limits are not applied.
-/// Contacts still push it.
+/// Leaves the velocity of this body to the app: the engine does not apply gravity, forces, damping or speed
+/// limits. Contacts still push the body.
 #[derive(Component, Debug, Default, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default)]
 pub struct CustomVelocityIntegration;
 
-/// Leaves the position of this body to the app: its velocity does not move it. Contacts still use
-/// its velocity.
+/// Leaves the position of this body to the app: the velocity does not move the body. Contacts still use the
+/// velocity.
 ///
 /// The body counts as at rest, and may fall asleep, while the app does not move it and its velocity is within
 /// its [`SleepThreshold`](crate::dynamics::rigid_body::sleeping::SleepThreshold).

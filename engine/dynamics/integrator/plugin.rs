@@ -10,15 +10,15 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Integrates velocities and positions, by semi-implicit Euler: velocities first, then positions with the
-/// new velocities.
+/// Integrates velocities and positions by semi-implicit Euler: velocities first, then positions with the new
+/// velocities.
 pub struct IntegratorPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
 impl IntegratorPlugin {
-    /// Integrates in `schedule`. The default is [`SubstepSchedule`]. The app runs any other schedule itself,
-    /// once per substep: each run integrates by the length of one.
+    /// Integrates in `schedule`. The default is [`SubstepSchedule`]. An app with another schedule runs it
+    /// once per substep: each run integrates over the length of one substep.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern() }
     }

@@ -1,4 +1,4 @@
-//! [`JointAxis`]: what a [`GenericJoint`](super::GenericJoint) does along or about one axis.
+//! [`JointAxis`]: limits, springs and motors of one axis of a [`GenericJoint`](super::GenericJoint).
 
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::math::{Scalar, to_f32};
 
-/// What a joint does along or about one axis: free by default.
+/// The behaviour of a joint along or about one axis. Free by default.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -25,14 +25,14 @@ use crate::math::{Scalar, to_f32};
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub struct JointAxis {
-    /// The least and the greatest value, in m or rad: none if the axis is free, one value twice if it is
-    /// locked there. An end may be infinite.
+    /// Minimum and maximum, in m or rad. `None` if the axis is free; two equal values if it is locked. Each
+    /// limit may be infinite.
     pub limits: Option<[Scalar; 2]>,
-    /// How far the axis gives way at its limits, or where it is locked.
+    /// Softness of the limits, or of the lock.
     pub softness: JointSoftness,
-    /// A spring besides. It has no effect where the axis is locked and rigid.
+    /// An additional spring. It has no effect if the axis is locked and rigid.
     pub spring: Option<AxisSpring>,
-    /// The motor. Disabled by default. It has no effect where the axis is locked and rigid.
+    /// The motor. Disabled by default. It has no effect if the axis is locked and rigid.
     pub motor: AxisMotor,
 }
 
@@ -43,37 +43,37 @@ impl Default for JointAxis {
 }
 
 impl JointAxis {
-    /// Without limits and motor.
+    /// A free axis: no limits and no motor.
     pub const FREE: Self =
         Self { limits: None, softness: JointSoftness::Rigid, spring: None, motor: AxisMotor::DISABLED };
 
-    /// Held at 0.
+    /// An axis locked at 0.
     pub const LOCKED: Self = Self::limited(0.0, 0.0);
 
-    /// Between two values, in m or rad.
+    /// An axis with a minimum and a maximum, in m or rad.
     pub const fn limited(min: Scalar, max: Scalar) -> Self {
         Self { limits: Some([min, max]), ..Self::FREE }
     }
 
-    /// Whether it is held at one value.
+    /// Whether the axis is locked at one value.
     pub fn is_locked(&self) -> bool {
         self.limits.is_some_and(|[min, max]| min == max)
     }
 
-    /// Sets how far the limits give way, in m/N or rad/(N·m). 0 is rigid.
+    /// Sets the compliance of the limits, in m/N or rad/(N·m). 0 is rigid.
     pub const fn with_compliance(mut self, compliance: Scalar) -> Self {
         self.softness = JointSoftness::Compliance(compliance);
         self
     }
 
-    /// Adds a spring that bears nothing at `rest`, in m or rad.
+    /// Adds a spring with rest position `rest`, in m or rad.
     pub const fn with_spring(mut self, rest: Scalar, model: MotorModel) -> Self {
         self.spring = Some(AxisSpring { rest, model });
         self
     }
 
-    /// Makes the limits, or where it is locked, a spring with a frequency in Hz and a damping ratio,
-    /// whatever the masses.
+    /// Makes the limits, or the lock, a spring with a frequency in Hz and a damping ratio. The spring behaves
+    /// alike for all masses.
     pub const fn with_soft_limits(mut self, frequency: Scalar, damping_ratio: Scalar) -> Self {
         self.softness = JointSoftness::Spring { frequency, damping_ratio };
         self
@@ -85,7 +85,7 @@ impl JointAxis {
         self
     }
 
-    /// The kernel's axis.
+    /// The axis in the kernel's type.
     pub(super) fn to_kernel(self) -> Axis {
         let limits = self.limits.map(|limits| limits.map(to_f32));
         let spring = self.spring.and_then(|AxisSpring { rest, model }| {
@@ -101,28 +101,28 @@ impl JointAxis {
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub struct AxisSpring {
-    /// Where it bears nothing, in m or rad.
+    /// The position at which the spring exerts no force, in m or rad.
     pub rest: Scalar,
-    /// Its stiffness and damping.
+    /// The spring's stiffness and damping.
     pub model: MotorModel,
 }
 
-/// How far an axis of a joint gives way.
+/// The softness of a joint axis at its limits, or where it is locked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub enum JointSoftness {
-    /// As little as the substeps resolve.
+    /// As rigid as the substeps resolve.
     #[default]
     Rigid,
-    /// By this many metres per newton, or radians per newton metre, without damping. 0 is rigid.
+    /// A compliance in m/N or rad/(N·m), without damping. 0 is rigid.
     Compliance(Scalar),
-    /// As a damped oscillator, whatever the masses.
+    /// A damped oscillator that behaves alike for all masses.
     Spring {
-        /// In Hz. Positive.
+        /// Frequency, in Hz. Positive.
         frequency: Scalar,
-        /// 0 for no damping, 1 for critical damping.
+        /// Damping ratio. 0 is no damping, 1 is critical damping.
         damping_ratio: Scalar,
     },
 }

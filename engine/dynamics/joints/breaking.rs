@@ -8,11 +8,12 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::{settings::JointForces, space::magnitude};
 use crate::math::{AngularVector, Scalar, Vector};
 
-/// The load above which the joint of its entity breaks. Beyond Avian.
+/// The load above which the joint on the same entity breaks. Beyond Avian.
 ///
-/// At the end of a step the joint's [`JointForces`], which the component brings along, are compared with it.
-/// A joint that bears more gets [`JointDisabled`](super::JointDisabled) and is reported by [`JointBroken`]:
-/// it has no effect from the next step on. Removing [`JointDisabled`](super::JointDisabled) mends it.
+/// At the end of a step the engine compares the joint's [`JointForces`], a required component, with the
+/// threshold. A joint with a higher load gets [`JointDisabled`](super::JointDisabled), has no effect from the
+/// next step on, and is reported by [`JointBroken`]. Removing [`JointDisabled`](super::JointDisabled) repairs
+/// the joint.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -32,46 +33,46 @@ use crate::math::{AngularVector, Scalar, Vector};
 #[reflect(Debug, Component, Default, PartialEq)]
 #[require(JointForces)]
 pub struct JointBreakThreshold {
-    /// The greatest force that the joint bears, in N. [`Scalar::INFINITY`] for any; NaN counts as that.
+    /// Maximum force that the joint bears, in N. [`Scalar::INFINITY`] or NaN for no maximum.
     pub force: Scalar,
-    /// The greatest torque that the joint bears, in N·m, besides that of the force at the anchor.
-    /// [`Scalar::INFINITY`] for any; NaN counts as that.
+    /// Maximum torque that the joint bears, in N·m, excluding the torque of the force at the anchor.
+    /// [`Scalar::INFINITY`] or NaN for no maximum.
     pub torque: Scalar,
 }
 
 impl Default for JointBreakThreshold {
-    /// Never breaks.
+    /// A joint that never breaks.
     fn default() -> Self {
         Self::new(Scalar::INFINITY, Scalar::INFINITY)
     }
 }
 
 impl JointBreakThreshold {
-    /// A greatest force in N, and a greatest torque in N·m.
+    /// A maximum force in N and a maximum torque in N·m.
     pub const fn new(force: Scalar, torque: Scalar) -> Self {
         Self { force, torque }
     }
 
-    /// A greatest force in N; any torque.
+    /// A maximum force in N, without a maximum torque.
     pub const fn force(force: Scalar) -> Self {
         Self::new(force, Scalar::INFINITY)
     }
 
-    /// A greatest torque in N·m; any force.
+    /// A maximum torque in N·m, without a maximum force.
     pub const fn torque(torque: Scalar) -> Self {
         Self::new(Scalar::INFINITY, torque)
     }
 
-    /// Whether forces are above it.
+    /// Whether forces exceed the threshold.
     pub fn is_exceeded_by(&self, forces: &JointForces) -> bool {
         forces.force().length() > self.force || magnitude(forces.torque()) > self.torque
     }
 }
 
-/// A joint broke, and has [`JointDisabled`](super::JointDisabled) now. Written as a message, and triggered at
+/// A joint broke and now has [`JointDisabled`](super::JointDisabled). Written as a message, and triggered at
 /// the joint's entity.
 ///
-/// Breaks are sent at the end of a step, in
+/// These events are sent at the end of a step, in
 /// [`CollisionEventSystems`](crate::collision::narrow_phase::CollisionEventSystems): the messages, then the
 /// triggers, in the order of the joints in the tables of the ECS.
 #[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq)]
@@ -83,8 +84,8 @@ pub struct JointBroken {
     pub body1: Entity,
     /// The joint's second body.
     pub body2: Entity,
-    /// The force on the second body that broke it, along the world's axes, in N.
+    /// The force on the second body that broke the joint, along the world's axes, in N.
     pub force: Vector,
-    /// The torque on the second body that broke it, about the world's axes, in N·m.
+    /// The torque on the second body that broke the joint, about the world's axes, in N·m.
     pub torque: AngularVector,
 }

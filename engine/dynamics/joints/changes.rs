@@ -1,4 +1,4 @@
-//! Finds joints that were mutated, by ticks.
+//! Finds mutated joints by change ticks.
 
 use bevy_ecs::prelude::*;
 

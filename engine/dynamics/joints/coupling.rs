@@ -1,5 +1,5 @@
-//! Joints that tie a coordinate of one body to one of another: gears, racks, pulleys. How they become
-//! couplings of the kernel.
+//! Joints that couple a coordinate of one body to a coordinate of another: gears, racks, pulleys. Converts
+//! them to couplings of the kernel.
 
 use kernel::{
     math as k,
@@ -15,19 +15,19 @@ use crate::{
     physics_transform::Rotation,
 };
 
-/// One end: how a body moves that is tied.
+/// One end of a coupling: the coordinate of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CoupledEnd {
-    /// It turns about an axis in the world, which does not matter in 2D.
+    /// The rotation about a world axis. The axis is ignored in 2D.
     Turn(Vector),
-    /// It slides along an axis in the world.
+    /// The displacement along a world axis.
     Shift(Vector),
-    /// A point on it moves away from a point in the world.
+    /// The distance between a point on the body and a point in the world.
     Distance([Vector; 2]),
 }
 
-/// The settings of a coupling: the coordinate at the first body and `ratio` times the one at the second
-/// keep their sum.
+/// The settings of a coupling: the coordinate of the first body plus `ratio` times the coordinate of the
+/// second is constant, or bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coupling {
     pub(crate) ends: [CoupledEnd; 2],
@@ -36,19 +36,19 @@ pub(crate) struct Coupling {
     pub(crate) compliance: Scalar,
 }
 
-/// What the sum may be.
+/// The constraint on the sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Sum {
-    /// What it is as the coupling begins.
+    /// The sum keeps the value that it has when the coupling starts.
     Kept,
-    /// At most this.
+    /// The sum is at most this value.
     AtMost(Scalar),
-    /// At most what it is as the coupling begins.
+    /// The sum is at most the value that it has when the coupling starts.
     AtMostNow,
 }
 
 impl CoupledEnd {
-    /// The coordinate now.
+    /// The current coordinate.
     fn value(self, position: Vector, rotation: Rotation) -> Scalar {
         match self {
             Self::Turn(_) | Self::Shift(_) => 0.0,
@@ -56,7 +56,7 @@ impl CoupledEnd {
         }
     }
 
-    /// The end of a body that is at a pose now. Turns and shifts are counted from there.
+    /// The kernel's end for a body at a pose. Rotations and displacements are counted from this pose.
     fn to_kernel(self, position: Vector, rotation: Rotation) -> CouplingEnd {
         let frame = |anchor, basis| JointFrame { anchor, basis };
         let ground = |position, rotation| k::WorldPose { position: world_to_kernel(position), rotation };
@@ -82,7 +82,7 @@ impl CoupledEnd {
 }
 
 impl Coupling {
-    /// The kernel's coupling of two bodies that are at these poses now.
+    /// The kernel's coupling of two bodies at these poses.
     pub(crate) fn definition(&self, bodies: [u32; 2], poses: [(Vector, Rotation); 2]) -> CouplingDef {
         let ends = core::array::from_fn(|side| {
             let (position, rotation) = poses[side];

@@ -19,10 +19,11 @@ use super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Keeps a point of one body within a range of distances from a point of another. The bodies turn freely.
+/// Keeps the distance between a point of one body and a point of another within limits. The bodies turn
+/// freely.
 ///
-/// With one distance it is a rod, with a compliance a spring, with a greatest distance only a rope. A
-/// distance of 0, the default, holds the points together.
+/// Equal limits make a rod, a compliance makes a spring, and a maximum alone makes a rope. A distance of 0,
+/// the default, holds the points together.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -46,9 +47,9 @@ pub struct DistanceJoint {
     pub anchor1: JointAnchor,
     /// The point on the second body.
     pub anchor2: JointAnchor,
-    /// The least and the greatest distance.
+    /// Minimum and maximum distance.
     pub limits: DistanceLimit,
-    /// How far the limits give way, in m/N. 0 for not at all.
+    /// Compliance of the limits, in m/N. 0 is rigid.
     pub compliance: Scalar,
 }
 
@@ -65,8 +66,7 @@ impl DistanceJoint {
         }
     }
 
-    /// A rope: the origins of two bodies are no further apart than a length in metres, and may come nearer.
-    /// Beyond Avian.
+    /// A rope: the origins of two bodies are at most `length` metres apart. Beyond Avian.
     pub const fn rope(body1: Entity, body2: Entity, length: Scalar) -> Self {
         Self::new(body1, body2).with_limits(0.0, length)
     }
@@ -100,20 +100,20 @@ impl DistanceJoint {
         self.anchor2.local()
     }
 
-    /// Sets the least and the greatest distance to one value, in metres.
+    /// Sets the minimum and maximum distance to one value, in metres.
     #[deprecated(since = "0.4.0", note = "use `with_limits`")]
     pub const fn with_rest_length(mut self, rest_length: Scalar) -> Self {
         self.limits = DistanceLimit::new(rest_length, rest_length);
         self
     }
 
-    /// Sets the least and the greatest distance, in metres.
+    /// Sets the minimum and maximum distance, in metres.
     pub const fn with_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.limits = DistanceLimit::new(min, max);
         self
     }
 
-    /// Sets the least distance, in metres. A greatest distance below it is lifted: the points may be any
+    /// Sets the minimum distance, in metres. A maximum distance below it is removed: the points may be any
     /// distance apart.
     pub const fn with_min_distance(mut self, min: Scalar) -> Self {
         self.limits.min = min;
@@ -123,13 +123,13 @@ impl DistanceJoint {
         self
     }
 
-    /// Sets the greatest distance, in metres.
+    /// Sets the maximum distance, in metres.
     pub const fn with_max_distance(mut self, max: Scalar) -> Self {
         self.limits.max = max;
         self
     }
 
-    /// Sets how far the limits give way, in m/N.
+    /// Sets the compliance of the limits, in m/N.
     pub const fn with_compliance(mut self, compliance: Scalar) -> Self {
         self.compliance = compliance;
         self

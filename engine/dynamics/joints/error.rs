@@ -1,4 +1,4 @@
-//! [`JointError`]: how far a joint is off.
+//! [`JointError`]: the position error of a joint.
 
 use bevy_ecs::{prelude::*, reflect::ReflectComponent};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -11,11 +11,11 @@ use crate::{
     math::Scalar,
 };
 
-/// How far the locked axes and limits of the joint are off at the end of the last step. Add the component to
-/// have it written. Beyond Avian.
+/// The error of the joint's locked axes and limits at the end of the last step. Add the component to request
+/// it. Beyond Avian.
 ///
-/// Of several axes it is the root of the sum of squares. Both numbers are zero while the joint takes no part
-/// in the simulation.
+/// Errors of several axes are combined as the root of the sum of squares. Both numbers are zero while the
+/// joint is not in the simulation.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -31,13 +31,13 @@ use crate::{
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default, PartialEq)]
 pub struct JointError {
-    /// Of positions and distances, in metres.
+    /// The error of positions and distances, in metres.
     pub length: Scalar,
-    /// Of angles, in radians.
+    /// The error of angles, in radians.
     pub angle: Scalar,
 }
 
-/// Writes the errors of the joints that ask for them.
+/// Writes the errors of joints with [`JointError`].
 pub(crate) fn store_joint_errors(
     mut errors: Query<(Entity, &mut JointError)>,
     joints: Res<Joints>,

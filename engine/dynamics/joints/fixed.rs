@@ -1,4 +1,4 @@
-//! [`FixedJoint`]: two bodies as one.
+//! [`FixedJoint`]: joins two bodies rigidly.
 
 use bevy_ecs::{
     component::Component,
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds two bodies together as if they were one: their frames coincide.
+/// Joins two bodies as if they were one: their frames coincide.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -41,9 +41,9 @@ pub struct FixedJoint {
     pub frame1: JointFrame,
     /// The frame on the second body.
     pub frame2: JointFrame,
-    /// How far the anchors give way, in m/N. 0 for not at all.
+    /// Compliance of the anchors, in m/N. 0 is rigid.
     pub point_compliance: Scalar,
-    /// How far the bases give way, in rad/(N·m). 0 for not at all.
+    /// Compliance of the bases, in rad/(N·m). 0 is rigid.
     pub angle_compliance: Scalar,
 }
 
@@ -68,13 +68,13 @@ impl FixedJoint {
         self
     }
 
-    /// Sets how far the anchors give way, in m/N.
+    /// Sets the compliance of the anchors, in m/N.
     pub const fn with_point_compliance(mut self, compliance: Scalar) -> Self {
         self.point_compliance = compliance;
         self
     }
 
-    /// Sets how far the bases give way, in rad/(N·m).
+    /// Sets the compliance of the bases, in rad/(N·m).
     pub const fn with_angle_compliance(mut self, compliance: Scalar) -> Self {
         self.angle_compliance = compliance;
         self

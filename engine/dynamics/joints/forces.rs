@@ -12,7 +12,7 @@ use crate::{
     math::{Scalar, angular_from_kernel, vector_from_kernel},
 };
 
-/// Writes the forces of the last substep to the entities that ask for them.
+/// Writes the forces of the last substep to entities with [`JointForces`].
 pub(crate) fn store_joint_forces(
     mut forces: Query<(Entity, &mut JointForces, Option<&JointBreakThreshold>)>,
     mut joints: ResMut<Joints>,
@@ -40,13 +40,13 @@ pub(crate) fn store_joint_forces(
     }
 }
 
-/// Disables the joints that broke in the step, and sends the events.
+/// Disables joints that broke in the step, and sends the events.
 pub(crate) fn send_broken(world: &mut World) {
     if world.resource::<Joints>().broken.is_empty() {
         return;
     }
     let mut broken = core::mem::take(&mut world.resource_mut::<Joints>().broken);
-    // Systems of the app may have despawned it since.
+    // A system of the app may have despawned the joint.
     broken.retain(|event| world.get_entity(event.joint).is_ok());
     for event in &broken {
         world.entity_mut(event.joint).insert(JointDisabled);
@@ -57,7 +57,7 @@ pub(crate) fn send_broken(world: &mut World) {
     for event in broken {
         if world.get_entity(event.joint).is_ok() {
             world.trigger(event);
-            // The next observer sees what the commands of this one did.
+            // Applies the observer's commands before the next observer runs.
             world.flush();
         }
     }

@@ -1,4 +1,4 @@
-//! Where a joint is on a body: [`JointFrame`], of a [`JointAnchor`] and a [`JointBasis`].
+//! The pose of a joint on a body: a [`JointFrame`] has a [`JointAnchor`] and a [`JointBasis`].
 
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
@@ -7,10 +7,10 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::space::{Isometry, Rot, basis_of, isometry, parts, rotation_of};
 use crate::{math::Vector, physics_transform::Rotation};
 
-/// A frame of a joint on one of its bodies: a point, and the directions of axes there.
+/// A frame of a joint on one of its bodies: an anchor point and the directions of the joint's axes.
 ///
-/// Given [`FromGlobal`](JointAnchor::FromGlobal), it becomes local at the start of the first step in which
-/// both bodies are there. A body that moves later takes its frame with it.
+/// A frame given as [`FromGlobal`](JointAnchor::FromGlobal) becomes local at the start of the first step with
+/// both bodies. Afterwards the frame moves with its body.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -23,16 +23,16 @@ use crate::{math::Vector, physics_transform::Rotation};
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Debug, Default, PartialEq)]
 pub struct JointFrame {
-    /// The point.
+    /// The anchor point.
     pub anchor: JointAnchor,
-    /// The directions.
+    /// The directions of the axes.
     pub basis: JointBasis,
 }
 
 crate::type_path::type_path!(JointFrame, "dynamics::joints");
 
 impl JointFrame {
-    /// The origin and the axes of the body.
+    /// The body's origin and axes.
     pub const IDENTITY: Self = Self { anchor: JointAnchor::ZERO, basis: JointBasis::IDENTITY };
 
     /// A frame relative to the body.
@@ -47,12 +47,12 @@ impl JointFrame {
         Self { anchor: JointAnchor::FromGlobal(anchor), basis: JointBasis::FromGlobal(basis) }
     }
 
-    /// The frame relative to the body, if both its parts are local. In `f32`.
+    /// The frame relative to the body, if anchor and basis are local. In `f32`.
     pub fn get_local_isometry(&self) -> Option<Isometry> {
         Some(isometry(self.anchor.local()?, self.basis.local()?))
     }
 
-    /// The frame in the world, if both its parts are global. In `f32`.
+    /// The frame in the world, if anchor and basis are global. In `f32`.
     pub fn get_global_isometry(&self) -> Option<Isometry> {
         match (self.anchor, self.basis) {
             (JointAnchor::FromGlobal(anchor), JointBasis::FromGlobal(basis)) => Some(isometry(anchor, basis)),
@@ -60,7 +60,7 @@ impl JointFrame {
         }
     }
 
-    /// Both frames relative to their bodies, which are at the given poses.
+    /// Both frames relative to their bodies at the given poses.
     pub fn compute_local(
         frame1: Self,
         frame2: Self,
@@ -72,7 +72,7 @@ impl JointFrame {
         [frame1.localized(pos1, *rot1), frame2.localized(pos2, *rot2)]
     }
 
-    /// Whether both parts are relative to the body.
+    /// Whether anchor and basis are local.
     pub(crate) fn is_local(&self) -> bool {
         self.anchor.local().is_some() && self.basis.local().is_some()
     }
@@ -119,7 +119,7 @@ impl JointAnchor {
     /// The body's origin.
     pub const ZERO: Self = Self::Local(Vector::ZERO);
 
-    /// Both anchors relative to their bodies, which are at the given poses.
+    /// Both anchors relative to their bodies at the given poses.
     pub fn compute_local(
         anchor1: Self,
         anchor2: Self,
@@ -146,7 +146,7 @@ impl JointAnchor {
     }
 }
 
-/// The directions of a joint's axes on a body. Those of the body by default.
+/// The directions of a joint's axes on a body. By default they are the body's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -171,7 +171,7 @@ impl JointBasis {
     /// The axes of the body.
     pub const IDENTITY: Self = Self::Local(Rot::IDENTITY);
 
-    /// Both bases relative to their bodies, which have the given rotations.
+    /// Both bases relative to their bodies with the given rotations.
     pub fn compute_local(rotation1: Self, rotation2: Self, rot1: &Rot, rot2: &Rot) -> [Self; 2] {
         [rotation1.localized(rotation_of(*rot1)), rotation2.localized(rotation_of(*rot2))]
     }

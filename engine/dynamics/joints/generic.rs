@@ -1,4 +1,4 @@
-//! [`GenericJoint`]: each axis as wanted.
+//! [`GenericJoint`]: a joint with settings for each axis.
 
 use bevy_ecs::{
     component::Component,
@@ -19,11 +19,11 @@ use super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds two bodies as its axes say: each is free, locked, limited, sprung or driven on its own. All are free
-/// at first. Beyond Avian.
+/// Constrains two bodies by independent settings for each axis: free, locked, limited, sprung or driven. All
+/// axes are free by default. Beyond Avian.
 ///
-/// The other joints are settings of this one. Coordinates are those of the second frame in the first:
-/// [`JointCoordinate`].
+/// Every other joint of two frames is a special case. Coordinates are positions and angles of the second
+/// frame relative to the first: [`JointCoordinate`].
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -56,7 +56,7 @@ pub struct GenericJoint {
 }
 
 impl GenericJoint {
-    /// A joint that leaves everything free.
+    /// A joint with all axes free.
     pub const fn new(body1: Entity, body2: Entity) -> Self {
         Self {
             body1,
@@ -89,19 +89,19 @@ impl GenericJoint {
         self
     }
 
-    /// Sets the least and the greatest value of an axis, in m or rad.
+    /// Sets the minimum and maximum value of an axis, in m or rad.
     pub const fn with_limits(mut self, coordinate: JointCoordinate, min: Scalar, max: Scalar) -> Self {
         self.axis_mut(coordinate).limits = Some([min, max]);
         self
     }
 
-    /// Sets how far the limits of an axis give way, in m/N or rad/(N·m).
+    /// Sets the compliance of the limits of an axis, in m/N or rad/(N·m).
     pub const fn with_compliance(mut self, coordinate: JointCoordinate, compliance: Scalar) -> Self {
         *self.axis_mut(coordinate) = self.axis(coordinate).with_compliance(compliance);
         self
     }
 
-    /// Adds a spring to an axis that bears nothing at `rest`, in m or rad.
+    /// Adds a spring with rest position `rest` to an axis, in m or rad.
     pub const fn with_spring(mut self, coordinate: JointCoordinate, rest: Scalar, model: MotorModel) -> Self {
         *self.axis_mut(coordinate) = self.axis(coordinate).with_spring(rest, model);
         self

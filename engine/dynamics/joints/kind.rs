@@ -1,8 +1,8 @@
-//! A kind of joint, and how it becomes a joint of the kernel.
+//! The kinds of joints, and their conversion to joints of the kernel.
 //!
-//! The kernel knows one joint: two frames, and for each coordinate of the second frame in the first whether
-//! it is free, limited or driven. A kind is a choice of these settings. Where it has an axis, the frames are
-//! turned so that their x axis is that axis.
+//! The kernel has one joint: two frames, and for each coordinate of the second frame relative to the first
+//! whether it is free, limited or driven. A kind is a choice of these settings. If a kind has an axis, its
+//! frames are rotated to make their x axis this axis.
 
 use bevy_ecs::{
     change_detection::Mut,
@@ -27,18 +27,18 @@ use crate::math::{Scalar, to_f32, vector_to_kernel};
 
 /// A constraint between entities.
 pub trait EntityConstraint<const ENTITY_COUNT: usize>: MapEntities {
-    /// The entities that it holds.
+    /// The constrained entities.
     fn entities(&self) -> [Entity; ENTITY_COUNT];
 }
 
 /// A kind of joint of the engine.
 pub(crate) trait JointKind {
-    /// The coordinate that its motor drives.
+    /// The coordinate that the joint's motor drives.
     fn motor(&self) -> Option<usize> {
         None
     }
 
-    /// What it ties, if it is no joint of two frames.
+    /// The coupling, if this kind is a coupling and not a joint of two frames.
     fn coupling(&self) -> Option<Coupling> {
         None
     }
@@ -49,18 +49,18 @@ pub(crate) trait JointKind {
     /// Replaces the frames.
     fn set_frames(&mut self, frames: [JointFrame; 2]);
 
-    /// The turn from the kernel's axes to the joint's.
+    /// The rotation from the kernel's axes to the joint's.
     fn turn(&self) -> Rot {
         Rot::IDENTITY
     }
 
-    /// Sets what the joint does with each coordinate.
+    /// Sets the kernel's axis for each coordinate.
     fn set_axes(&self, def: JointDef) -> JointDef;
 }
 
-/// Something to be done for each kind of joint.
+/// An operation to run for each kind of joint.
 pub(crate) trait KindVisitor {
-    /// Does it for one kind.
+    /// Runs the operation for one kind.
     fn visit<J: JointKind + EntityConstraint<2> + Component<Mutability = Mutable>>(&mut self);
 }
 
@@ -72,7 +72,7 @@ pub(crate) trait JointMut {
     /// The joint.
     fn kind(&self) -> &dyn JointKind;
 
-    /// Replaces its frames. The component counts as changed.
+    /// Replaces the joint's frames and marks the component as changed.
     fn set_frames(&mut self, frames: [JointFrame; 2]);
 }
 
@@ -90,7 +90,7 @@ impl<J: JointKind + EntityConstraint<2> + Component> JointMut for Mut<'_, J> {
     }
 }
 
-/// Implements what all joints have in common for one with `body1` and `body2`.
+/// Implements the traits of joints for a type with `body1` and `body2`.
 macro_rules! between_two_bodies {
     ($joint:ident) => {
         impl EntityConstraint<2> for $joint {
@@ -110,7 +110,7 @@ macro_rules! between_two_bodies {
 
 pub(super) use between_two_bodies;
 
-/// The methods of [`JointKind`] for one with `frame1` and `frame2`.
+/// Implements the frame methods of [`JointKind`] for a type with `frame1` and `frame2`.
 macro_rules! own_frames {
     () => {
         fn frames(&self) -> [JointFrame; 2] {
@@ -125,8 +125,8 @@ macro_rules! own_frames {
 
 pub(super) use own_frames;
 
-/// The kernel's joint for a kind whose frames are local, between the bodies with these ids. `None` if a
-/// frame is global.
+/// The kernel's joint between the bodies with these ids, for a kind with local frames. `None` if a frame is
+/// global.
 pub(crate) fn definition(
     joint: &(impl JointKind + ?Sized),
     bodies: [u32; 2],
@@ -144,12 +144,12 @@ pub(crate) fn definition(
     Some(joint.set_axes(def))
 }
 
-/// A locked coordinate that gives way by a compliance, in m/N or rad/(N·m).
+/// A locked coordinate with a compliance, in m/N or rad/(N·m).
 pub(super) fn locked(compliance: Scalar) -> Axis {
     Axis::LOCKED.with_give(give(compliance))
 }
 
-/// A coordinate with limits, if there are any.
+/// A coordinate with limits, if any.
 pub(super) fn limited(limits: Option<impl Into<[f32; 2]>>, compliance: Scalar) -> Axis {
     limits.map_or(Axis::FREE, |limits| {
         let [min, max] = limits.into();
@@ -169,7 +169,7 @@ impl From<AngleLimit> for [f32; 2] {
     }
 }
 
-/// The kernel's motor for one that turns.
+/// The kernel's motor for an [`AngularMotor`].
 pub(super) fn angular_motor(motor: &AngularMotor) -> Option<Motor> {
     kernel_motor(
         motor.enabled,
@@ -178,7 +178,7 @@ pub(super) fn angular_motor(motor: &AngularMotor) -> Option<Motor> {
     )
 }
 
-/// The kernel's motor for one that moves along an axis.
+/// The kernel's motor for a [`LinearMotor`].
 pub(super) fn linear_motor(motor: &LinearMotor) -> Option<Motor> {
     kernel_motor(
         motor.enabled,
@@ -187,7 +187,7 @@ pub(super) fn linear_motor(motor: &LinearMotor) -> Option<Motor> {
     )
 }
 
-/// The kernel's motor for one of any axis.
+/// The kernel's motor for an [`AxisMotor`].
 pub(super) fn axis_motor(motor: &AxisMotor) -> Option<Motor> {
     kernel_motor(
         motor.enabled,
@@ -196,7 +196,7 @@ pub(super) fn axis_motor(motor: &AxisMotor) -> Option<Motor> {
     )
 }
 
-/// The kernel's motor that turns the second frame to the first, with a greatest torque.
+/// The kernel's motor that turns the second frame to the first, with a maximum torque.
 pub(super) fn orientation_motor(model: MotorModel, max_torque: Scalar) -> Option<OrientationMotor> {
     Some(OrientationMotor {
         target_rotation: Rot::IDENTITY,

@@ -1,6 +1,6 @@
-//! The list of all kinds of joints, from which queries, filters and visitors are made.
+//! The list of all kinds of joints. Queries, filters and visitors are generated from it.
 
-/// Makes the types and functions over all kinds of joints from one list of names and components.
+/// Defines the types and functions over all kinds of joints from one list of names and components.
 macro_rules! joint_kinds {
     ($($name:ident: $joint:ident),+ $(,)?) => {
         /// Visits each kind of joint.
@@ -27,7 +27,7 @@ macro_rules! joint_kinds {
         }
 
         impl AnyJointItem<'_, '_> {
-            /// The joint; if there are several for a moment, the first.
+            /// The joint. If the entity temporarily has several joints, the first.
             pub(crate) fn joint(&mut self) -> Option<&mut dyn $crate::dynamics::joints::kind::JointMut> {
                 $(if let Some(joint) = &mut self.$name {
                     return Some(joint);

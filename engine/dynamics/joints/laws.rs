@@ -1,11 +1,11 @@
-//! Laws of motors, springs and limits, in the kernel's terms.
+//! Conversion of motors, springs and limits to the kernel's types.
 
 use kernel::solver::{Drive, Give, Spring};
 
 use super::motor::MotorModel;
 use crate::math::{Scalar, to_f32};
 
-/// How far a limit with a compliance gives way.
+/// The kernel's softness of a limit with a compliance.
 pub(super) fn give(compliance: Scalar) -> Give {
     match to_f32(compliance) {
         0.0 => Give::Rigid,
@@ -13,7 +13,7 @@ pub(super) fn give(compliance: Scalar) -> Give {
     }
 }
 
-/// The kernel's law of a motor or a spring. None if it does nothing.
+/// The kernel's drive for a motor or a spring. `None` if it has no effect.
 pub(super) fn law(model: MotorModel) -> Option<Drive> {
     Some(match model {
         // Without a frequency there is neither stiffness nor damping.
@@ -30,7 +30,7 @@ pub(super) fn law(model: MotorModel) -> Option<Drive> {
     })
 }
 
-/// The greatest effort of a motor. [`Scalar::MAX`] is none.
+/// Maximum effort of a motor. [`Scalar::MAX`] is no maximum.
 pub(super) fn effort(max: Scalar) -> f32 {
     match to_f32(max) {
         f32::MAX => f32::INFINITY,

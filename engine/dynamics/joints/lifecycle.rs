@@ -1,4 +1,4 @@
-//! Notes which joints may have to enter, leave or change.
+//! Notes joints that may have to enter, leave or change.
 //!
 //! ```text
 //!   joint      waiting ──both bodies are there──▶ held ──one leaves, or is another──▶ waiting
@@ -34,7 +34,7 @@ fn note_joint<E: EntityEvent>(on: On<E, Kinds>, mut joints: ResMut<Joints>) {
     joints.note(on.event_target());
 }
 
-/// Components beside joints that change them.
+/// Components that affect the joint on the same entity.
 type Settings = (JointDisabled, JointCollisionDisabled, JointDamping, Disabled);
 
 fn note_settings<E: EntityEvent>(

@@ -6,22 +6,22 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::{Scalar, Vector};
 
-/// The least and the greatest value of a distance, or of a position along an axis.
+/// Minimum and maximum value of a distance, or of a position along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Debug, PartialEq)]
 pub struct DistanceLimit {
-    /// The least value, in metres.
+    /// Minimum value, in metres.
     pub min: Scalar,
-    /// The greatest value, in metres.
+    /// Maximum value, in metres.
     pub max: Scalar,
 }
 
 crate::type_path::type_path!(DistanceLimit, "dynamics::joints");
 
 impl DistanceLimit {
-    /// Exactly 0.
+    /// A limit of exactly 0.
     pub const ZERO: Self = Self { min: 0.0, max: 0.0 };
 
     /// The limits `min` and `max`, in metres.
@@ -29,8 +29,8 @@ impl DistanceLimit {
         Self { min, max }
     }
 
-    /// The direction in which the second of two points has to move to be within the limits, and how far, in
-    /// metres. Both are zero within them.
+    /// The direction in which the second of two points must move to satisfy the limits, and the distance in
+    /// metres. Both are zero within the limits.
     ///
     /// `separation` is the vector from the first point to the second.
     pub fn compute_correction(&self, separation: Vector) -> (Vector, Scalar) {
@@ -42,37 +42,37 @@ impl DistanceLimit {
         (separation * (-excess.signum() / distance), excess.abs())
     }
 
-    /// How far the second of two points has to move along an axis of unit length to be within the limits, as
-    /// a vector in metres.
+    /// The displacement of the second of two points along an axis of unit length that satisfies the limits,
+    /// as a vector in metres.
     pub fn compute_correction_along_axis(&self, separation: Vector, axis: Vector) -> Vector {
         axis * -self.excess(separation.dot(axis))
     }
 
-    /// How far a value is beyond the limits, positive above them.
+    /// The excess of a value over the limits: positive above them, negative below, zero within.
     fn excess(&self, value: Scalar) -> Scalar {
         excess(value, self.min, self.max)
     }
 }
 
-/// The least and the greatest value of an angle, in radians, counter-clockwise.
+/// Minimum and maximum of an angle, in radians, counter-clockwise.
 ///
-/// Angles are those of the second body relative to the first. They may be beyond a full turn: revolute
-/// joints count turns.
+/// Angles are measured from the first body to the second. They may exceed a full turn: revolute joints count
+/// turns.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Debug, PartialEq)]
 pub struct AngleLimit {
-    /// The least angle, in radians.
+    /// Minimum angle, in radians.
     pub min: Scalar,
-    /// The greatest angle, in radians.
+    /// Maximum angle, in radians.
     pub max: Scalar,
 }
 
 crate::type_path::type_path!(AngleLimit, "dynamics::joints");
 
 impl AngleLimit {
-    /// Exactly 0.
+    /// A limit of exactly 0.
     pub const ZERO: Self = Self { min: 0.0, max: 0.0 };
 
     /// The limits `min` and `max`, in radians.
@@ -80,7 +80,7 @@ impl AngleLimit {
         Self { min, max }
     }
 
-    /// How far an angle is beyond the limits, positive above them.
+    /// The excess of an angle over the limits: positive above them, negative below, zero within.
     pub(super) fn excess(&self, angle: Scalar) -> Scalar {
         excess(angle, self.min, self.max)
     }
@@ -99,7 +99,7 @@ fn excess(value: Scalar, min: Scalar, max: Scalar) -> Scalar {
 macro_rules! from_numbers {
     ($($limit:ident)+) => {$(
         impl From<Scalar> for $limit {
-            /// Exactly this value.
+            /// Minimum and maximum both equal this value.
             fn from(value: Scalar) -> Self {
                 Self::new(value, value)
             }

@@ -1,4 +1,4 @@
-//! Joints: what holds two bodies together, and how they may move relative to each other.
+//! Joints: constraints on the relative motion of two bodies.
 //!
 //! A joint is an entity with one of these components:
 //!
@@ -15,8 +15,8 @@
 //! | [`MouseJoint`] | everything: it pulls a body to the pose of its entity |
 //! | `SphericalJoint` (3D) | all turns about a point, with limits of swing and twist |
 //!
-//! Beside it may be [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`], [`JointForces`],
-//! [`JointError`] and [`JointBreakThreshold`]. [`JointSolver`] chooses how all are solved.
+//! The entity may also have [`JointDisabled`], [`JointCollisionDisabled`], [`JointDamping`], [`JointForces`],
+//! [`JointError`] and [`JointBreakThreshold`]. [`JointSolver`] selects the solver for all joints.
 //!
 //! ```
 //! # use avian::{math::Vector, prelude::*};
@@ -29,15 +29,15 @@
 //! }
 //! ```
 //!
-//! A joint acts while both its entities are bodies in the simulation, in whatever order all three were
-//! spawned. Its fields may change at any time, the bodies too. One that cannot act, because its bodies are
-//! one or its numbers are not finite, is reported once, and acts as soon as it can. Bodies of a joint are in
-//! one island: they sleep and wake together.
+//! A joint acts while both its entities are bodies in the simulation, in whatever order the joint and the
+//! bodies were spawned. Its fields may change at any time, including the bodies. A joint that cannot act,
+//! because both bodies are the same or its numbers are not finite, is reported once, and acts as soon as it
+//! can. The bodies of a joint are in one island: they sleep and wake together.
 //!
 //! # Compliance
 //!
-//! A compliance of 0 is rigid: it gives way as little as the substeps resolve. A compliance of α gives way
-//! by α times the force or torque, without damping of its own: it is a spring of stiffness 1/α.
+//! A compliance of 0 is rigid: the joint gives way as little as the substeps resolve. A joint with compliance
+//! α gives way by α times the force or torque: it is a spring of stiffness 1/α, without damping.
 //! [`JointDamping`] damps it.
 
 mod axis;
@@ -100,6 +100,6 @@ pub enum JointSystems {
     /// Between
     /// [`SolverSystems::PrepareSolverBodies`](super::solver::schedule::SolverSystems::PrepareSolverBodies)
     /// and [`SolverSystems::PrepareJoints`](super::solver::schedule::SolverSystems::PrepareJoints). Frames
-    /// are local by then: they are computed at the start of the step, where joints enter.
+    /// are already local: they are computed at the start of the step, where joints enter.
     PrepareLocalFrames,
 }

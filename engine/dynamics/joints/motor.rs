@@ -6,7 +6,7 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::Scalar;
 
-/// How strongly a motor pulls towards its target position and velocity.
+/// The strength with which a motor drives towards its target position and velocity.
 ///
 /// The force is k (target position − position) + c (target velocity − velocity), up to the motor's maximum.
 /// It is integrated implicitly, so large coefficients do not make it unstable.
@@ -15,21 +15,21 @@ use crate::math::Scalar;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Default, PartialEq)]
 pub enum MotorModel {
-    /// k and c of a damped oscillator, whatever the masses: k = m (2π f)², c = 2 m ζ 2π f.
+    /// k and c of a damped oscillator that behaves alike for all masses: k = m (2π f)², c = 2 m ζ 2π f.
     SpringDamper {
         /// f, in Hz.
         frequency: Scalar,
         /// ζ: 0 for no damping, 1 for critical damping.
         damping_ratio: Scalar,
     },
-    /// Given k and c: heavy bodies are slower.
+    /// k and c are given: heavy bodies are slower.
     ForceBased {
         /// k, in N/m or N·m/rad.
         stiffness: Scalar,
         /// c, in N·s/m or N·m·s/rad.
         damping: Scalar,
     },
-    /// k and c per mass, or per moment of inertia: bodies of all masses move alike.
+    /// k and c are given per mass, or per moment of inertia: bodies of all masses move alike.
     AccelerationBased {
         /// k per mass, in 1/s².
         stiffness: Scalar,
@@ -49,7 +49,7 @@ impl MotorModel {
     pub const DEFAULT: Self = Self::SpringDamper { frequency: 5.0, damping_ratio: 1.0 };
 }
 
-/// Defines a motor, whose greatest effort is a torque or a force.
+/// Defines a motor with a maximum torque or force.
 macro_rules! motor {
     (
         $(#[$doc:meta])*
@@ -70,7 +70,7 @@ macro_rules! motor {
             pub target_position: Scalar,
             #[doc = concat!("The greatest ", $effort, ". [`Scalar::MAX`] by default, for no maximum.")]
             pub $max: Scalar,
-            /// How strongly it pulls.
+            /// The motor's stiffness and damping.
             pub motor_model: MotorModel,
         }
 
@@ -81,7 +81,7 @@ macro_rules! motor {
         }
 
         impl $motor {
-            /// A motor that is enabled, with targets of 0.
+            /// An enabled motor, with targets of 0.
             pub const fn new(motor_model: MotorModel) -> Self {
                 Self {
                     enabled: true,
@@ -92,7 +92,7 @@ macro_rules! motor {
                 }
             }
 
-            /// A motor that is disabled, with targets of 0.
+            /// A disabled motor, with targets of 0.
             pub const fn new_disabled(motor_model: MotorModel) -> Self {
                 Self { enabled: false, ..Self::new(motor_model) }
             }
@@ -121,7 +121,7 @@ macro_rules! motor {
                 self
             }
 
-            /// Sets how strongly it pulls.
+            /// Sets the motor's stiffness and damping.
             pub const fn with_motor_model(mut self, motor_model: MotorModel) -> Self {
                 self.motor_model = motor_model;
                 self
@@ -172,11 +172,11 @@ motor! {
 }
 
 impl AxisMotor {
-    /// A motor that is disabled.
+    /// A disabled motor.
     pub const DISABLED: Self = Self::new_disabled(MotorModel::DEFAULT);
 }
 
-/// Makes an [`AxisMotor`] of a motor.
+/// Implements the conversion of a motor to an [`AxisMotor`].
 macro_rules! to_axis_motor {
     ($($motor:ident: $max:ident),+) => {$(
         impl From<$motor> for AxisMotor {

@@ -1,4 +1,4 @@
-//! [`MouseJoint`]: a body pulled to a pose.
+//! [`MouseJoint`]: pulls a body to a pose.
 
 use bevy_ecs::{
     component::Component,
@@ -23,16 +23,16 @@ use crate::{
     math::{Scalar, Vector},
 };
 
-/// Pulls a point of a body to where this entity is, by a damped spring with a greatest force: to drag bodies
-/// with the mouse, or to carry them before a camera. Beyond Avian.
+/// Pulls a point of a body to the position of this entity, by a damped spring with a maximum force: to drag
+/// bodies with the mouse, or to carry them in front of a camera. Beyond Avian.
 ///
-/// The pose of the joint's own entity is the target: move it by its `Transform` or
+/// The pose of the joint's own entity is the target: move the entity by its `Transform` or
 /// [`Position`](crate::physics_transform::Position) in any frame, or make it the child of another entity. For
-/// that the entity is a kinematic body. With a [`max_torque`](Self::max_torque) the body turns to the
-/// entity's rotation, too.
+/// this purpose the entity is a kinematic body. With a [`max_torque`](Self::max_torque) the body also turns
+/// to the entity's rotation.
 ///
-/// To let another body be dragged, change [`body`](Self::body) or insert the component again. An entity that
-/// overwrites the component in place with a new one has no effect, as the new one does not know its entity.
+/// To drag another body, change [`body`](Self::body) or insert the component again. Assigning a new
+/// `MouseJoint` to the component in place has no effect, because the new value does not know its entity.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -60,13 +60,13 @@ pub struct MouseJoint {
     target: Entity,
     /// The body that is pulled.
     pub body: Entity,
-    /// The point on it. The body's origin by default.
+    /// The anchor point on the body. The body's origin by default.
     pub anchor: JointAnchor,
-    /// How strongly it pulls. A critically damped spring of 5 Hz by default.
+    /// Stiffness and damping of the pull. By default a critically damped spring of 5 Hz.
     pub motor_model: MotorModel,
-    /// The greatest force along each axis of the target, in N. [`Scalar::MAX`] by default, for no maximum.
+    /// Maximum force along each axis of the target, in N. By default [`Scalar::MAX`], which is no maximum.
     pub max_force: Scalar,
-    /// The greatest torque, in N·m. 0 by default: the body turns freely.
+    /// Maximum torque, in N·m. 0 by default: the body turns freely.
     pub max_torque: Scalar,
 }
 
@@ -78,7 +78,7 @@ fn note_own_entity(mut world: DeferredWorld, context: HookContext) {
 }
 
 impl MouseJoint {
-    /// A joint at the origin of a body, without a greatest force.
+    /// A joint at the origin of a body, without a maximum force.
     pub const fn new(body: Entity) -> Self {
         Self {
             target: Entity::PLACEHOLDER,
@@ -90,31 +90,31 @@ impl MouseJoint {
         }
     }
 
-    /// Sets the point on the body to the one that is at a point in the world, in metres.
+    /// Sets the anchor to the point of the body at a world position, in metres.
     pub const fn with_anchor(mut self, anchor: Vector) -> Self {
         self.anchor = JointAnchor::FromGlobal(anchor);
         self
     }
 
-    /// Sets the point on the body, relative to it, in metres.
+    /// Sets the anchor on the body, relative to it, in metres.
     pub const fn with_local_anchor(mut self, anchor: Vector) -> Self {
         self.anchor = JointAnchor::Local(anchor);
         self
     }
 
-    /// Sets how strongly it pulls.
+    /// Sets the stiffness and damping of the pull.
     pub const fn with_motor_model(mut self, motor_model: MotorModel) -> Self {
         self.motor_model = motor_model;
         self
     }
 
-    /// Sets the greatest force, in N.
+    /// Sets the maximum force, in N.
     pub const fn with_max_force(mut self, max_force: Scalar) -> Self {
         self.max_force = max_force;
         self
     }
 
-    /// Sets the greatest torque, in N·m.
+    /// Sets the maximum torque, in N·m.
     pub const fn with_max_torque(mut self, max_torque: Scalar) -> Self {
         self.max_torque = max_torque;
         self

@@ -10,7 +10,7 @@ use crate::{
     step::{self, Owner},
 };
 
-/// Makes joints act. Without it they have no effect.
+/// Simulates joints. Without this plugin joints have no effect.
 pub struct JointPlugin;
 
 impl Plugin for JointPlugin {

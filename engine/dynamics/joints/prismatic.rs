@@ -24,7 +24,8 @@ use crate::math::{Scalar, Vector};
 
 /// Lets the second body slide along an axis of the first, without turning: doors, lifts, pistons.
 ///
-/// The position is that of the second anchor along the axis, from the first. It may have limits and a motor.
+/// The joint position is the coordinate of the second anchor along the axis, measured from the first anchor.
+/// It may have limits and a motor.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -53,13 +54,13 @@ pub struct PrismaticJoint {
     pub frame2: JointFrame,
     /// The direction of the axis in the joint's frames. Its length does not matter.
     pub slider_axis: Vector,
-    /// The least and the greatest position, if there are any.
+    /// Minimum and maximum position, if any.
     pub limits: Option<DistanceLimit>,
-    /// How far the second anchor gives way across the axis, in m/N. 0 for not at all.
+    /// Compliance of the second anchor perpendicular to the axis, in m/N. 0 is rigid.
     pub align_compliance: Scalar,
-    /// How far the bases give way, in rad/(N·m). 0 for not at all.
+    /// Compliance of the bases, in rad/(N·m). 0 is rigid.
     pub angle_compliance: Scalar,
-    /// How far the limits give way, in m/N. 0 for not at all.
+    /// Compliance of the limits, in m/N. 0 is rigid.
     pub limit_compliance: Scalar,
     /// The motor along the axis. Disabled by default.
     pub motor: LinearMotor,
@@ -107,7 +108,7 @@ impl PrismaticJoint {
         Some(rotation_of(self.local_basis2()?) * self.slider_axis)
     }
 
-    /// Sets the least and the greatest position, in metres.
+    /// Sets the minimum and maximum position, in metres.
     pub const fn with_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.limits = Some(DistanceLimit::new(min, max));
         self
@@ -122,19 +123,19 @@ impl PrismaticJoint {
         self
     }
 
-    /// Sets how far the second anchor gives way across the axis, in m/N.
+    /// Sets the compliance of the second anchor perpendicular to the axis, in m/N.
     pub const fn with_align_compliance(mut self, compliance: Scalar) -> Self {
         self.align_compliance = compliance;
         self
     }
 
-    /// Sets how far the bases give way, in rad/(N·m).
+    /// Sets the compliance of the bases, in rad/(N·m).
     pub const fn with_angle_compliance(mut self, compliance: Scalar) -> Self {
         self.angle_compliance = compliance;
         self
     }
 
-    /// Sets how far the limits give way, in m/N.
+    /// Sets the compliance of the limits, in m/N.
     pub const fn with_limit_compliance(mut self, compliance: Scalar) -> Self {
         self.limit_compliance = compliance;
         self

@@ -17,11 +17,12 @@ use super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Hangs two bodies on the ends of a rope over two pulleys in the world: as one goes up, the other goes down.
-/// Beyond Avian.
+/// Hangs two bodies on the ends of a rope over two pulleys fixed in the world: when one body goes up, the
+/// other goes down. Beyond Avian.
 ///
-/// The distance of the first body from its pulley, and `ratio` times that of the second from its own, are
-/// together no longer than the rope. The rope may be slack, and does not stop an end at its pulley.
+/// The distance of the first body from its pulley plus `ratio` times the distance of the second body from its
+/// pulley is at most the rope's length. The rope may be slack, and the joint does not stop a body at its
+/// pulley.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -43,25 +44,24 @@ pub struct PulleyJoint {
     pub body1: Entity,
     /// The second body.
     pub body2: Entity,
-    /// The point of the first body at which the rope ends.
+    /// The point of the first body that is attached to the rope.
     pub anchor1: JointAnchor,
-    /// The point of the second body at which the rope ends.
+    /// The point of the second body that is attached to the rope.
     pub anchor2: JointAnchor,
     /// The pulleys of the first and of the second body, in the world, in metres.
     pub pulleys: [Vector; 2],
-    /// The weight of the second distance: 2 for a block and tackle, in which the second body moves half
-    /// as far. Not 0.
+    /// The weight of the second distance. 2 is a block and tackle: the second body moves half as far. Not 0.
     pub ratio: Scalar,
-    /// The length of the rope in metres. `None`, the default, is as long as it has to be where the bodies are
-    /// as the joint begins to act.
+    /// The length of the rope in metres. With `None`, the default, the rope is taut at the poses at which the
+    /// joint starts to act.
     pub length: Option<Scalar>,
-    /// How far the rope gives way, in m/N. 0 for not at all.
+    /// Compliance of the rope, in m/N. 0 is rigid.
     pub compliance: Scalar,
 }
 
 impl PulleyJoint {
-    /// A rope between the origins of two bodies over pulleys at two points in the world, which is taut where
-    /// the bodies are.
+    /// A rope between the origins of two bodies over pulleys at two world points. The rope is taut at the
+    /// initial poses of the bodies.
     pub const fn new(body1: Entity, body2: Entity, pulleys: [Vector; 2]) -> Self {
         Self {
             body1,
@@ -99,7 +99,7 @@ impl PulleyJoint {
         self
     }
 
-    /// Sets how far the rope gives way, in m/N.
+    /// Sets the compliance of the rope, in m/N.
     pub const fn with_compliance(mut self, compliance: Scalar) -> Self {
         self.compliance = compliance;
         self

@@ -1,4 +1,4 @@
-//! Components beside a joint: what is off, damping, and forces.
+//! Optional components of a joint entity: disabling, damping, and forces.
 
 use bevy_ecs::{component::Component, reflect::ReflectComponent};
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -8,7 +8,7 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::space::NO_TORQUE;
 use crate::math::{AngularVector, Scalar, Vector};
 
-/// Turns the joint of its entity off, as if it were not there.
+/// Disables the joint of its entity, as if the joint did not exist.
 #[derive(Reflect, Clone, Copy, Component, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -17,7 +17,7 @@ pub struct JointDisabled;
 
 crate::type_path::type_path!(JointDisabled, "dynamics::joints");
 
-/// Lets the two bodies of a joint pass through each other as long as the joint holds them.
+/// Disables collisions between the two bodies of a joint while the joint acts.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -34,9 +34,9 @@ pub struct JointCollisionDisabled;
 
 crate::type_path::type_path!(JointCollisionDisabled, "dynamics::joints");
 
-/// The rate at which the bodies of a joint lose velocity relative to each other, in 1/s. None by default.
+/// Damping of the relative velocity of a joint's bodies, in 1/s. 0 by default.
 ///
-/// It slows down what the joint leaves free. Momentum is conserved, and kinematic bodies keep their velocity.
+/// It damps the free axes of the joint. Momentum is conserved, and kinematic bodies keep their velocity.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -50,9 +50,9 @@ pub struct JointDamping {
 
 crate::type_path::type_path!(JointDamping, "dynamics::joints");
 
-/// The forces of a joint in the last step. Add the component to have them written.
+/// The forces of a joint in the last step. Add the component to request them.
 ///
-/// All are zero while the joint takes no part in the simulation.
+/// All forces are zero while the joint is not in the simulation.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -83,20 +83,21 @@ impl JointForces {
         Self { force: Vector::ZERO, torque: NO_TORQUE, motor_force: 0.0 }
     }
 
-    /// The force on the second body along the world's axes, in N. The first body gets the opposite.
+    /// The force on the second body along the world's axes, in N. The force on the first body is opposite.
     pub const fn force(&self) -> Vector {
         self.force
     }
 
-    /// The torque on the second body about the world's axes, in N·m, besides that of the force at the anchor.
-    /// The first body gets the opposite.
+    /// The torque on the second body about the world's axes, in N·m, excluding the torque of the force at the
+    /// anchor. The torque on the first body is opposite.
     pub const fn torque(&self) -> AngularVector {
         self.torque
     }
 
-    /// The force of the motor in N, or its torque in N·m. Positive if it pushes towards greater positions. Of
-    /// a motor that turns about any axis it is the amount. Of gears, racks and pulleys it is the torque or
-    /// the force on the first body along its coordinate: negative where a rope pulls.
+    /// The motor's force in N, or its torque in N·m. It is positive if the motor pushes towards larger
+    /// positions. For a motor that turns about any axis it is the magnitude of the torque. For gears, racks
+    /// and pulleys it is the torque or force on the first body along its coordinate: negative where a rope
+    /// pulls.
     pub const fn motor_force(&self) -> Scalar {
         self.motor_force
     }

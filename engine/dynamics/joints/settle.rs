@@ -1,4 +1,4 @@
-//! Adds, changes and removes joints in the kernel, as their components say.
+//! Adds, changes and removes joints in the kernel to match their components.
 
 use bevy_ecs::{entity_disabling::Disabled, prelude::*, system::SystemParam};
 use bevy_log::warn;
@@ -19,7 +19,7 @@ use crate::{
 type JointState =
     (AnyJoint, Option<&'static JointDamping>, Has<JointCollisionDisabled>, Has<JointDisabled>, Has<Disabled>);
 
-/// Components of its bodies.
+/// Components of a joint's bodies.
 type BodyState = (&'static BodyId, &'static Position, &'static Rotation);
 
 /// Id and pose of a body.
@@ -32,7 +32,8 @@ pub(crate) struct JointCensus<'w, 's> {
     bodies: Query<'w, 's, BodyState, (With<RigidBody>, Allow<Disabled>)>,
 }
 
-/// Settles all joints that may have changed, in the order in which they were noted. So ids follow that order.
+/// Adds, changes or removes all joints that may have changed. Ids follow the order in which the joints were
+/// noted.
 pub(crate) fn settle_joints(mut own: JointTables, mut tables: Tables, mut census: JointCensus) {
     for joint in core::mem::take(&mut own.joints.gone) {
         own.remove(joint, &mut tables);
@@ -44,7 +45,7 @@ pub(crate) fn settle_joints(mut own: JointTables, mut tables: Tables, mut census
     own.joints.noted = noted;
 }
 
-/// Why a joint cannot act, in words as well.
+/// Why a joint cannot act, with a message for the app.
 type Refusal = (Complaint, String);
 
 impl JointCensus<'_, '_> {
@@ -61,7 +62,7 @@ impl JointCensus<'_, '_> {
         own.joints.enlist(entity, ends);
         let held = match find(ends, bodies) {
             Ok(Some(found)) => hold(entity, joint, found, damping, own, tables),
-            // It waits for a body.
+            // The joint waits for a body.
             Ok(None) => return own.release(entity, tables),
             Err(refusal) => Err(refusal),
         };
@@ -82,7 +83,7 @@ impl JointCensus<'_, '_> {
     }
 }
 
-/// The bodies of a joint; `None` while one is not in the simulation.
+/// The bodies of a joint. `None` while a body is not in the simulation.
 fn find<'a>(
     ends: [Entity; 2],
     bodies: &'a Query<BodyState, (With<RigidBody>, Allow<Disabled>)>,
@@ -100,7 +101,7 @@ fn find<'a>(
     Ok(is_there.then_some(found))
 }
 
-/// Makes the frames of a joint local, where they are not.
+/// Makes the frames of a joint local.
 fn localize(joint: &mut dyn JointMut, [a, b]: [Found; 2]) {
     let [frame1, frame2] = joint.kind().frames();
     if !(frame1.is_local() && frame2.is_local()) {
@@ -122,7 +123,7 @@ fn hold(
     let kind = joint.kind();
     let coupling = kind.coupling();
     let held = own.joints.get(entity).and_then(|record| record.held).filter(|held| held.bodies == bodies);
-    // Couplings are counted from where they begin, so one that is different begins anew.
+    // The coordinates of a coupling count from the pose where it starts, so a changed coupling starts anew.
     let held = held.filter(|held| held.coupling == coupling);
     if held.is_none() {
         own.release(entity, tables);
@@ -148,7 +149,7 @@ fn hold(
     Ok(())
 }
 
-/// Lets the bodies of a joint collide, or not.
+/// Disables or enables collisions between the bodies of a joint.
 fn keep_apart(entity: Entity, is_apart: bool, own: &mut JointTables, tables: &mut Tables) {
     let Some(held) = own.joints.get(entity).and_then(|record| record.held) else { return };
     if held.is_apart == is_apart {

@@ -1,4 +1,4 @@
-//! [`JointSolver`]: how joints are solved.
+//! [`JointSolver`]: the method that solves joints.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
@@ -6,7 +6,7 @@ use bevy_reflect::prelude::*;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use kernel::solver as k;
 
-/// How joints are solved, in the whole app. It may change at any time. Beyond Avian.
+/// The method that solves the joints of the app. It may change at any time. Beyond Avian.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -20,13 +20,13 @@ use kernel::solver as k;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub enum JointSolver {
-    /// Joints that form trees of three and more (chains, bridges, ragdolls) are solved at once, all others
-    /// one by one. Trees bear loads of 1,000 times their own mass.
+    /// Joints that form trees of three and more (chains, bridges, ragdolls) are solved directly, tree by
+    /// tree. All others are solved one by one. Trees bear loads of 1,000 times their own mass.
     #[default]
     Auto,
-    /// One by one. Where heavy bodies hang on light ones, joints open.
+    /// All joints are solved one by one. Joints open where heavy bodies hang on light ones.
     Rows,
-    /// Trees are solved at once and without softness, from one joint on: for cranes and machines, which bend
+    /// Trees are solved directly and without softness, from one joint on: for cranes and machines, which bend
     /// by less than a millimetre. Light bodies that swing fast and hold heavy ones may gain energy.
     Rigid,
 }

@@ -21,7 +21,7 @@ pub(crate) type Isometry = Isometry3d;
 
 /// The coordinates of a position.
 pub(super) const TRANSLATIONS: [usize; 3] = [X, Y, Z];
-/// Those across the x axis.
+/// The coordinates perpendicular to the x axis.
 pub(super) const ACROSS: [usize; 2] = [Y, Z];
 /// The coordinates of a rotation.
 pub(super) const ROTATIONS: [usize; 3] = [TWIST, SWING_Y, SWING_Z];
@@ -29,17 +29,17 @@ pub(super) const ROTATIONS: [usize; 3] = [TWIST, SWING_Y, SWING_Z];
 /// No torque.
 pub(super) const NO_TORQUE: AngularVector = Vector::ZERO;
 
-/// The length of a torque, in N·m.
+/// The magnitude of a torque, in N·m.
 pub(super) fn magnitude(torque: AngularVector) -> Scalar {
     torque.length()
 }
 
-/// The rotation of a basis, with its operations.
+/// The rotation of a basis, as a [`Rotation`].
 pub(crate) fn rotation_of(basis: Rot) -> Rotation {
     Rotation(basis)
 }
 
-/// The basis with a rotation.
+/// The basis of a [`Rotation`].
 pub(crate) fn basis_of(rotation: Rotation) -> Rot {
     rotation.0
 }
@@ -54,8 +54,8 @@ pub(super) fn isometry(translation: Vector, rotation: Rot) -> Isometry {
     Isometry3d::new(translation.f32(), rotation.f32())
 }
 
-/// The rotation that takes the x axis to an axis; not finite if that has no direction. The turn about the
-/// axis depends on the axis only.
+/// The rotation that takes the x axis to `axis`. Not finite if `axis` has no direction. The twist about
+/// `axis` depends only on `axis`.
 pub(super) fn turn_to(axis: Vector) -> k::Rot {
     let turn = match axis.try_normalize() {
         Some(axis) => orthonormal_basis_from_vec(axis),
@@ -64,8 +64,8 @@ pub(super) fn turn_to(axis: Vector) -> k::Rot {
     Rotation(turn).to_kernel().admitted()
 }
 
-/// The rotation that takes the x axis to an axis, and the y axis to what a second one has across it; not
-/// finite if both span no plane.
+/// The rotation that takes the x axis to `x`, and the y axis to the component of `y` perpendicular to `x`.
+/// Not finite if `x` and `y` span no plane.
 pub(super) fn turn_to_plane(x: Vector, y: Vector) -> k::Rot {
     let along = x.try_normalize();
     let normal = along.and_then(|along| along.cross(y).try_normalize());
@@ -76,14 +76,14 @@ pub(super) fn turn_to_plane(x: Vector, y: Vector) -> k::Rot {
     Rotation(turn).to_kernel().admitted()
 }
 
-/// The axes of a turn about an axis.
+/// The frame rotation of a joint that turns about an axis.
 pub(super) fn turn_about(axis: Vector) -> k::Rot {
     turn_to(axis)
 }
 
-/// A coordinate of a joint: where its second frame is in its first.
+/// A coordinate of a joint: a position or angle of its second frame relative to its first.
 ///
-/// A rotation is a twist about the x axis, then a swing about an axis across it.
+/// A rotation is a twist about the x axis, then a swing about an axis perpendicular to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JointCoordinate {
     /// Along the first frame's x axis, in m.
@@ -92,12 +92,12 @@ pub enum JointCoordinate {
     Y = Y as isize,
     /// Along the first frame's z axis, in m.
     Z = Z as isize,
-    /// The angle about the x axes, in rad. Between limits it counts turns.
+    /// The angle about the x axes, in rad. With limits, full turns are counted.
     Twist = TWIST as isize,
-    /// The part about the first frame's y axis of the swing from the first x axis to the second, as a
-    /// rotation vector, in rad.
+    /// The swing rotates the first x axis to the second. This is the component of its rotation vector along
+    /// the first frame's y axis, in rad.
     SwingY = SWING_Y as isize,
-    /// The part about the first frame's z axis of that swing, in rad.
+    /// The component of the swing's rotation vector along the first frame's z axis, in rad.
     SwingZ = SWING_Z as isize,
 }
 
@@ -107,8 +107,8 @@ pub(super) const COORDINATES: usize = JointCoordinate::ALL.len();
 impl JointCoordinate {
     /// All coordinates.
     pub const ALL: [Self; 6] = [Self::X, Self::Y, Self::Z, Self::Twist, Self::SwingY, Self::SwingZ];
-    /// Those of the position.
+    /// The coordinates of the position.
     pub const TRANSLATIONS: [Self; 3] = [Self::X, Self::Y, Self::Z];
-    /// Those of the rotation.
+    /// The coordinates of the rotation.
     pub const ROTATIONS: [Self; 3] = [Self::Twist, Self::SwingY, Self::SwingZ];
 }

@@ -1,4 +1,4 @@
-//! All joints that the app has, with their ids in the kernel.
+//! All joints of the app, with their ids in the kernel.
 
 use bevy_ecs::{
     entity::{EntityHashMap, EntityIndexSet},
@@ -12,21 +12,21 @@ use crate::{
     noted::Noted,
 };
 
-/// All joints that are neither disabled nor despawned, by entity, and those that may have changed since
+/// All joints that are neither disabled nor despawned, by entity, and the joints that may have changed since
 /// the last step.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Joints {
     /// Entities whose joint may have to enter, leave or change.
     pub(crate) noted: Noted,
-    /// Known joints that were despawned, and whose place in the queue another entity took.
+    /// Known joints that were despawned and lost their place in the queue to another entity.
     pub(crate) gone: Vec<Entity>,
     /// Joints that broke in this step.
     pub(crate) broken: Vec<JointBroken>,
-    /// Whether joints are watched: without their plugin they have no effect.
+    /// Whether joints are watched. Without their plugin they have no effect.
     #[cfg(feature = "validate")]
     pub(crate) is_watched: bool,
     records: EntityHashMap<Record>,
-    /// The joints that name an entity as a body.
+    /// The joints of each entity that is named as a body.
     of_body: EntityHashMap<EntityIndexSet>,
 }
 
@@ -34,9 +34,9 @@ pub(crate) struct Joints {
 #[derive(Clone, Debug)]
 pub(crate) struct Record {
     pub(crate) bodies: [Entity; 2],
-    /// The joint in the kernel, while both bodies are in the simulation and the joint can be used.
+    /// The joint in the kernel, while both bodies are in the simulation and the joint is valid.
     pub(crate) held: Option<Held>,
-    /// Why it cannot act, as told to the app.
+    /// Why the joint cannot act, as reported to the app.
     pub(crate) told: Option<Complaint>,
 }
 
@@ -46,18 +46,18 @@ pub(crate) struct Held {
     pub(crate) id: u32,
     /// Ids of the bodies.
     pub(crate) bodies: [u32; 2],
-    /// The coordinate that its motor drives.
+    /// The coordinate that the joint's motor drives.
     pub(crate) motor: Option<usize>,
-    /// Its settings, if it is a coupling.
+    /// The settings, if the joint is a coupling.
     pub(crate) coupling: Option<Coupling>,
-    /// Whether it keeps its bodies from colliding.
+    /// Whether the joint disables collisions between its bodies.
     pub(crate) is_apart: bool,
 }
 
-/// The reason why a joint has no effect. The app gets one warning for each.
+/// Why a joint has no effect. The app gets one warning for each reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Complaint {
-    /// Both bodies are one.
+    /// Both bodies are the same.
     SameBody,
     /// An entity is not a body.
     NoBody(Entity),
@@ -99,7 +99,7 @@ impl Joints {
         self.noted.contains(joint) || self.gone.contains(&joint)
     }
 
-    /// Adds the joint of an entity, which is not known or has these bodies already.
+    /// Adds the joint of an entity. A joint that is already known must have these bodies.
     pub(crate) fn enlist(&mut self, joint: Entity, bodies: [Entity; 2]) {
         self.records.entry(joint).or_insert(Record { bodies, held: None, told: None });
         for body in bodies {
@@ -107,13 +107,13 @@ impl Joints {
         }
     }
 
-    /// Stores why a known joint cannot act. Returns whether that is new.
+    /// Stores why a known joint cannot act. Returns whether the reason is new.
     pub(crate) fn set_complaint(&mut self, joint: Entity, complaint: Option<Complaint>) -> bool {
         let record = self.records.get_mut(&joint);
         record.is_some_and(|record| core::mem::replace(&mut record.told, complaint) != complaint)
     }
 
-    /// Stores the kernel's joint of an entity that is known.
+    /// Stores the kernel's joint of a known entity.
     pub(crate) fn set_held(&mut self, joint: Entity, held: Held) {
         if let Some(record) = self.records.get_mut(&joint) {
             record.held = Some(held);
@@ -159,7 +159,7 @@ impl JointTables<'_> {
         self.joints.delist(joint);
     }
 
-    /// Removes the joints of a body from the kernel, before the body leaves. They come back with the body.
+    /// Removes the joints of a body from the kernel, before the body leaves. They return with the body.
     pub(crate) fn release_of_body(&mut self, body: Entity, tables: &mut Tables) {
         let Some(joints) = self.joints.of_body.get(&body) else { return };
         for joint in joints.iter().copied().collect::<Vec<_>>() {

@@ -1,4 +1,4 @@
-//! What becomes of each kind of joint in the kernel, and of frames in the world.
+//! The kernel joint of each kind of joint, and the localization of global frames.
 
 use bevy_ecs::{entity::Entity, world::World};
 use kernel::{

@@ -15,11 +15,11 @@ use crate::{
 
 /// Angular velocity of a body, in rad/s about each of the world's axes, right-handed.
 ///
-/// Dynamic and kinematic bodies turn about their centre of mass, wherever their origin is. To let a kinematic
-/// door turn about its edge, put the origin at the hinge, the collider beside it on a child, and the centre
-/// of mass at the origin. With [`FollowTransform`](crate::physics_transform::FollowTransform) the app turns
-/// the `Transform`, and the engine sets both velocities. A dynamic door needs a
-/// [`RevoluteJoint`](crate::dynamics::joints::RevoluteJoint). All three are in the example `hinged_door`.
+/// Dynamic and kinematic bodies rotate about their centre of mass, not about their origin. To turn a
+/// kinematic door about its edge, put the origin at the hinge, the collider beside it on a child, and the
+/// centre of mass at the origin. With [`FollowTransform`](crate::physics_transform::FollowTransform) the app
+/// rotates the `Transform`, and the engine sets both velocities. A dynamic door needs a
+/// [`RevoluteJoint`](crate::dynamics::joints::RevoluteJoint). The example `hinged_door` shows all three.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};

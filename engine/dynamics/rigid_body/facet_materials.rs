@@ -1,4 +1,4 @@
-//! Materials of single triangles and segments of a collider.
+//! Materials of individual triangles and segments of a collider.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
@@ -8,14 +8,15 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::{Friction, Restitution};
 use crate::math::Vector;
 
-/// Materials of single facets of a collider, in place of its [`Friction`] and [`Restitution`]: ice and
-/// rubber, or a conveyor belt, in one mesh.
+/// Materials of individual facets of a collider, which replace its [`Friction`] and [`Restitution`]: for ice
+/// and rubber, or a conveyor belt, in one mesh.
 ///
 /// The facets are the triangles (in 2D the segments) of a mesh, polyline or height field and the parts of a
 /// compound, in the order of [`Collider::parts`]. The component has no effect on convex shapes and voxels.
-/// Insert it on the entity of the collider, not of its body.
+/// Insert it on the collider's entity, not on the body's.
 ///
-/// Contacts with facets of different materials have a manifold for each. Changes count from the next step on.
+/// Contacts with facets of different materials have one manifold per material. Changes take effect in the
+/// next step.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -45,7 +46,7 @@ use crate::math::Vector;
 pub struct FacetMaterials {
     /// The materials, at most 255.
     pub materials: Vec<FacetMaterial>,
-    /// The index in `materials` of each facet. Facets without one, and those whose index does not exist, have
+    /// The index in `materials` of each facet. Facets without an index, or with an index out of range, have
     /// the material of the collider.
     pub facets: Vec<u8>,
 }
@@ -63,8 +64,8 @@ pub struct FacetMaterial {
     pub friction: Friction,
     /// The restitution.
     pub restitution: Restitution,
-    /// The velocity at which friction carries what lies on the facets, in the collider's frame, m/s. Only
-    /// what lies in the tangent plane counts.
+    /// The velocity at which friction carries bodies that lie on the facets, in the collider's frame, m/s.
+    /// Only the component in the tangent plane counts.
     pub tangent_velocity: Vector,
 }
 

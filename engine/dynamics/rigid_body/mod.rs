@@ -35,11 +35,11 @@ use crate::dynamics::integrator::VelocityIntegrationData;
 use crate::math::{Scalar, Vector};
 use crate::physics_transform::{Position, Rotation};
 
-/// Makes an entity a rigid body of a type.
+/// Makes an entity a rigid body of a given type.
 ///
-/// The component is immutable: to change the type, insert another `RigidBody`. The engine then
-/// observes changes, and need not scan all bodies. Contacts, joints, velocities and all other state
-/// survive the change.
+/// The component is immutable: to change the type, insert another `RigidBody`. The engine observes these
+/// insertions and does not need to scan all bodies. Contacts, joints, velocities and all other state survive
+/// the change.
 ///
 /// A dynamic body needs mass: from colliders on itself or its descendants (see
 /// [`ColliderDensity`](mass_properties::components::ColliderDensity)), or from
@@ -82,9 +82,10 @@ pub enum RigidBody {
     /// Moved by forces, contacts and joints.
     #[default]
     Dynamic,
-    /// Does not move. It may be teleported, but pushes nothing on its way.
+    /// Does not move. An app may teleport it, but on its way it pushes nothing.
     Static,
-    /// Moved only by its velocity, as if it had infinite mass: it pushes dynamic bodies and is not pushed.
+    /// Moved only by its velocity, as if it had infinite mass: it pushes dynamic bodies, but nothing pushes
+    /// it.
     Kinematic,
 }
 
@@ -99,18 +100,18 @@ impl RigidBody {
         *self == Self::Static
     }
 
-    /// Whether the body is moved only by its velocity.
+    /// Whether only its velocity moves the body.
     pub fn is_kinematic(&self) -> bool {
         *self == Self::Kinematic
     }
 }
 
-/// Takes a body out of the simulation: it does not move by itself, its colliders touch nothing, its joints
-/// have no effect, and bodies resting on it wake. Its components keep their values. Spatial queries find
-/// its colliders.
+/// Removes a body from the simulation: it does not move by itself, its colliders touch nothing, its joints
+/// have no effect, and bodies resting on it wake. Its components keep their values. Spatial queries still
+/// find its colliders.
 ///
-/// Below another entity in the hierarchy it keeps its `Transform` and moves with that entity: so a body
-/// can be carried.
+/// A disabled body below another entity in the hierarchy keeps its `Transform` and moves with that entity:
+/// this is a way to carry a body.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -155,7 +156,7 @@ pub struct RigidBodyDisabled;
 pub struct LinearVelocity(pub Vector);
 
 impl LinearVelocity {
-    /// At rest.
+    /// No velocity.
     pub const ZERO: LinearVelocity = LinearVelocity(Vector::ZERO);
 }
 

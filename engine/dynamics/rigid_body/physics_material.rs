@@ -1,4 +1,4 @@
-//! Materials of surfaces: friction, restitution, and how those of two colliders combine.
+//! Materials of surfaces: friction, restitution, and the rules that combine the materials of two colliders.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -8,9 +8,9 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::Scalar;
 
-/// How the coefficients of two touching surfaces combine.
+/// The rule that combines the coefficients of two touching surfaces.
 ///
-/// If the surfaces have different rules, the one further down the list is used.
+/// If the surfaces have different rules, the rule further down the list is used.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[reflect(Debug, PartialEq)]
 #[cfg_attr(
@@ -23,11 +23,11 @@ pub enum CoefficientCombine {
     Average = 1,
     /// The geometric mean, `√(a b)`; 0 if the product is negative.
     GeometricMean = 2,
-    /// The smaller one.
+    /// The smaller coefficient.
     Min = 3,
     /// The product, `a b`.
     Multiply = 4,
-    /// The larger one.
+    /// The larger coefficient.
     Max = 5,
 }
 
@@ -47,7 +47,7 @@ impl CoefficientCombine {
     }
 }
 
-/// The friction of colliders without their own and without one on their body.
+/// The friction of colliders that have no [`Friction`], neither their own nor their body's.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -57,7 +57,7 @@ impl CoefficientCombine {
 )]
 pub struct DefaultFriction(pub Friction);
 
-/// The restitution of colliders without their own and without one on their body.
+/// The restitution of colliders that have no [`Restitution`], neither their own nor their body's.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -69,8 +69,9 @@ pub struct DefaultRestitution(pub Restitution);
 
 /// Friction of a surface: the coefficients of Coulomb's law, `|tangent force| ≤ μ · normal force`.
 ///
-/// Usual values are between 0 (ice) and 1 (rubber). Larger ones are allowed, negative ones count as 0. On a
-/// body it applies to all colliders of the body without their own. [`DefaultFriction`] applies to all others.
+/// Usual values are between 0 (ice) and 1 (rubber). Larger values are allowed, negative values count as 0. On
+/// a body it applies to all its colliders without a `Friction` of their own. [`DefaultFriction`] applies to
+/// all other colliders.
 ///
 /// The solver uses the dynamic coefficient only.
 ///
@@ -89,11 +90,11 @@ pub struct DefaultRestitution(pub Restitution);
     reflect(Serialize, Deserialize)
 )]
 pub struct Friction {
-    /// The coefficient while the surfaces slide, without unit. 0.5 by default.
+    /// The coefficient while the surfaces slide, dimensionless. 0.5 by default.
     pub dynamic_coefficient: Scalar,
-    /// The coefficient up to which they do not slide, without unit. 0.5 by default.
+    /// The coefficient up to which the surfaces do not slide, dimensionless. 0.5 by default.
     pub static_coefficient: Scalar,
-    /// How this surface's coefficients are combined with another's.
+    /// The rule that combines this surface's coefficients with another's.
     pub combine_rule: CoefficientCombine,
 }
 
@@ -173,9 +174,9 @@ impl From<Scalar> for Friction {
     reflect(Serialize, Deserialize)
 )]
 pub struct Restitution {
-    /// The ratio of separation speed to approach speed, without unit.
+    /// The ratio of separation speed to approach speed, dimensionless.
     pub coefficient: Scalar,
-    /// How this surface's coefficient is combined with another's.
+    /// The rule that combines this surface's coefficient with another's.
     pub combine_rule: CoefficientCombine,
 }
 
@@ -188,7 +189,7 @@ impl Default for Restitution {
 impl Restitution {
     /// No bounce.
     pub const ZERO: Self = Self { coefficient: 0.0, combine_rule: CoefficientCombine::Average };
-    /// No bounce: bodies stay together.
+    /// No bounce: bodies stay in contact.
     pub const PERFECTLY_INELASTIC: Self = Self::ZERO;
     /// Full bounce: kinetic energy is conserved.
     pub const PERFECTLY_ELASTIC: Self = Self { coefficient: 1.0, ..Self::ZERO };

@@ -1,5 +1,5 @@
-//! Components and settings of sleeping. An island, a group of touching bodies, falls asleep when all of them
-//! have rested for a while. It then costs nothing until something wakes it.
+//! Components and settings of sleeping. An island, a group of touching bodies, falls asleep when all its
+//! bodies have rested for a while. A sleeping island costs nothing until it wakes.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -11,10 +11,10 @@ use derive_more::From;
 /// Marks a sleeping body. Inserting or removing it puts the body's island to sleep or wakes it.
 ///
 /// A sleeping body keeps its pose, [`LinearVelocity`](super::LinearVelocity) and
-/// [`AngularVelocity`](super::AngularVelocity), and wakes with these velocities, so that a stack continues as
-/// if it had not slept. Setting another velocity wakes it, unless the marker is inserted in the same step.
+/// [`AngularVelocity`](super::AngularVelocity), and wakes with these velocities: a stack continues as if it
+/// had not slept. Setting another velocity wakes the body, unless the marker is inserted in the same step.
 ///
-/// The marker has sparse-set storage, so that falling asleep does not move the body to another table.
+/// The marker has sparse-set storage: falling asleep does not move the body to another table.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -33,7 +33,7 @@ use derive_more::From;
 )]
 pub struct Sleeping;
 
-/// Prevents a body, and its whole island, from falling asleep. Inserting it wakes them.
+/// Prevents a body and its whole island from falling asleep. Inserting the component wakes the island.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default)]
 #[reflect(Component, Debug, Default)]
 #[cfg_attr(
@@ -43,7 +43,7 @@ pub struct Sleeping;
 )]
 pub struct SleepingDisabled;
 
-/// Speeds below which a body counts as at rest. A negative one keeps the body awake.
+/// Speeds below which a body counts as at rest. A negative speed keeps the body awake.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, PartialOrd)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -69,8 +69,8 @@ impl Default for SleepThreshold {
 #[deprecated(since = "0.4.0", note = "renamed to `SleepThreshold`")]
 pub type SleepingThreshold = SleepThreshold;
 
-/// How long a body has been at rest, in seconds. The engine updates it for awake bodies. An app may set it,
-/// for instance to 0.
+/// The time for which a body has been at rest, in seconds. The engine updates it for awake bodies. An app may
+/// set it, for instance to 0.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -84,8 +84,8 @@ pub struct SleepTimer(pub f32);
 #[deprecated(since = "0.4.0", note = "renamed to `SleepTimer`")]
 pub type TimeSleeping = SleepTimer;
 
-/// How long all bodies of an island must be at rest before it falls asleep, in seconds. 0.5 by default. The
-/// minimum is four steps.
+/// The time for which all bodies of an island must rest before the island falls asleep, in seconds. 0.5 by
+/// default. The minimum is four steps.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Resource, Debug, Default, PartialEq)]
 #[cfg_attr(

@@ -62,10 +62,10 @@ pub struct RigidBodyQuery {
     pub is_sensor: Has<Sensor>,
 }
 
-/// The methods that both items have.
+/// The methods of both query items.
 macro_rules! body_methods {
     () => {
-        /// The velocity in m/s of a point of the body, relative to the centre of mass and along the
+        /// The velocity in m/s of a point of the body. The point is relative to the centre of mass, along the
         /// world's axes.
         pub fn velocity_at_point(&self, point: Vector) -> Vector {
             let spin = angular_to_kernel(self.angular_velocity.0);
@@ -97,7 +97,8 @@ macro_rules! body_methods {
             world_inertia(*self.angular_inertia, &self.rotation, locks)
         }
 
-        /// The dominance of the body. That of bodies that are not dynamic is above all others.
+        /// The dominance of the body. Bodies that are not dynamic have a higher dominance than all dynamic
+        /// ones.
         pub fn dominance(&self) -> i16 {
             if self.rb.is_dynamic() {
                 self.dominance.map_or(0, |dominance| i16::from(dominance.0))

@@ -1,5 +1,5 @@
-//! Settings of the solver: the length unit, [`SolverConfig`], and the softness of contacts derived from it
-//! in every step.
+//! Settings of the solver: the length unit, [`SolverConfig`], and the contact softness, which is derived from
+//! them in every step.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -19,15 +19,15 @@ use crate::{
 };
 
 /// Overlap of resting contacts, times the [`PhysicsLengthUnit`]. Other tolerances of contacts are multiples
-/// of it. With less, resting contacts flicker; with more, overlap is visible.
+/// of it. A smaller value makes resting contacts flicker, a larger value makes overlap visible.
 pub(crate) const LINEAR_SLOP: f64 = 0.005;
 
-/// Roughly the length of a metre in the units of the app: the size of a typical object.
+/// The approximate length of a metre in units of the app: the size of a typical object.
 ///
-/// Tolerances and thresholds that are lengths or speeds are multiplied by it, so that a 2D game with
-/// characters of 100 pixels is as stable as one with characters of 1 unit. It does not scale positions,
+/// Tolerances and thresholds that are lengths or speeds are multiplied by it. This makes a 2D game with
+/// characters of 100 pixels as stable as a game with characters of 1 unit. It does not scale positions,
 /// velocities or [`Gravity`](crate::dynamics::integrator::Gravity). 1 by default. Set it before anything
-/// moves. Where gravity and the sizes of all that moves say that it was forgotten,
+/// moves. If gravity and the sizes of all moving bodies indicate that it was forgotten,
 /// `LengthUnitCheckPlugin` warns once.
 ///
 /// ```
@@ -72,28 +72,27 @@ impl PhysicsLengthUnit {
     }
 }
 
-/// Settings of contacts: stiffness, speeds, restitution. "LU" is [`PhysicsLengthUnit`].
+/// Settings of contacts: stiffness, speeds, restitution. "LU" means [`PhysicsLengthUnit`].
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Resource, Default, Debug, PartialEq)]
 pub struct SolverConfig {
-    /// The damping ratio ζ of overlap recovery. 10 by default. Above 1 overlap is removed without
-    /// oscillation; lower values are springier.
+    /// The damping ratio ζ of overlap recovery. 10 by default. Values above 1 remove overlap without
+    /// oscillation, lower values are springier.
     pub contact_damping_ratio: Scalar,
-    /// The frequency of overlap recovery, as a multiple of the highest one that the timestep resolves. 1.5 by
-    /// default. Higher is stiffer, but jitters.
+    /// The frequency of overlap recovery, as a multiple of the highest frequency that the timestep resolves.
+    /// 1.5 by default. Higher values are stiffer, but cause jitter.
     pub contact_frequency_factor: Scalar,
     /// Maximum speed at which overlap is pushed out, in LU/s. 4 by default. Higher values shoot overlapping
     /// bodies apart.
     pub max_overlap_solve_speed: Scalar,
-    /// Share of the last step's impulses for the warm start. 1 by default. With 0 stacks sag.
+    /// Fraction of the last step's impulses for the warm start. 1 by default. With 0 stacks sag.
     pub warm_start_coefficient: Scalar,
-    /// Minimum approach speed for restitution, in LU/s. 1 by default. With 0 resting bodies never
-    /// come to rest.
+    /// Minimum approach speed for restitution, in LU/s. 1 by default. With 0 bodies never come to rest.
     pub restitution_threshold: Scalar,
-    /// How often impacts are solved after the last substep, for what was stopped by continuous collision
-    /// detection. 1 by default. Impacts within substeps do not depend on it.
+    /// Number of restitution passes after the last substep, for bodies that continuous collision detection
+    /// stopped. 1 by default. Impacts within substeps do not depend on it.
     pub restitution_iterations: usize,
 }
 
@@ -112,16 +111,16 @@ impl Default for SolverConfig {
     }
 }
 
-/// Softness of contacts, computed from [`SolverConfig`] and the timestep in every step.
+/// Softness of contacts. Computed from [`SolverConfig`] and the timestep in every step.
 #[derive(Resource, Clone, Copy, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Resource, Default, PartialEq)]
 pub struct ContactSoftnessCoefficients {
-    /// For contacts between dynamic bodies.
+    /// Softness of contacts between dynamic bodies.
     pub dynamic: SoftnessCoefficients,
-    /// For contacts of a dynamic body with a static or kinematic one: twice as stiff, so that the ground
-    /// holds a pile.
+    /// Softness of contacts of a dynamic body with a static or kinematic body: twice as stiff, which lets the
+    /// ground support a pile.
     pub non_dynamic: SoftnessCoefficients,
 }
 

@@ -7,15 +7,15 @@ use core::time::Duration;
 
 /// Timers and counters of the solver in the last step.
 ///
-/// While [`SubstepSchedule`](super::schedule::SubstepSchedule) holds only the engine's own systems, all
-/// substeps run as one call, and their time is in [`solve_constraints`](Self::solve_constraints).
+/// While [`SubstepSchedule`](super::schedule::SubstepSchedule) contains only the engine's own systems, all
+/// substeps run as one call, and [`solve_constraints`](Self::solve_constraints) measures their time.
 #[derive(Resource, Debug, Default, Reflect)]
 #[reflect(Resource, Debug, Default)]
 pub struct SolverDiagnostics {
     /// Gathering bodies and building constraint rows.
     pub prepare_constraints: Duration,
-    /// Adding forces to the rows of bodies. Gravity is part of
-    /// [`integrate_velocities`](Self::integrate_velocities).
+    /// Adding forces to the rows of bodies. [`integrate_velocities`](Self::integrate_velocities) includes
+    /// gravity.
     pub update_velocity_increments: Duration,
     /// Integrating velocities.
     pub integrate_velocities: Duration,

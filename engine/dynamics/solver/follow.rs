@@ -19,8 +19,8 @@ use crate::{
     schedule::{Physics, TimePrecisionAdjusted},
 };
 
-/// Distance, as a share of the coordinates, and angle in rad up to which a body is at its target: the
-/// rounding of a step. What stands still has to be at rest, so that what lies on it can sleep.
+/// Maximum distance, as a fraction of the coordinates, and maximum angle in rad, at which a body is at its
+/// target: the rounding of a step. A body that does not move must be at rest, so that bodies on it can sleep.
 const ROUNDING: Scalar = 2.0e-6;
 
 /// Components of a body that follows its transform.
@@ -34,8 +34,8 @@ type Follower = (
     &'static ComputedCenterOfMass,
 );
 
-/// Gives each body that follows its transform the velocity that takes it there in this step. A body that the
-/// app moved by its pose stays there and rests.
+/// Gives each body that follows its transform the velocity to reach it in this step. If the app set the
+/// body's pose, the body stays there and rests.
 pub(crate) fn follow_transforms(
     mut followers: Query<Follower>,
     bodies: Res<Bodies>,
@@ -54,7 +54,7 @@ pub(crate) fn follow_transforms(
         if bodies.seen[id.0 as usize] != said_pose(&position, &rotation) {
             followed.stop();
         } else if let Some(Target { place: (to, turned), is_same, is_late }) = followed.take() {
-            // Bodies turn about their centre of mass.
+            // Bodies rotate about their centre of mass.
             let way = to.0 + turned * center.0 - (position.0 + *rotation * center.0);
             let turn = rotation.turn_to(turned);
             let size = 1.0 + to.0.abs().max_element();

@@ -1,4 +1,4 @@
-//! From components to body rows, and changes by the app.
+//! Reads components into body rows, and detects changes by the app.
 
 use bevy_ecs::{change_detection::ContiguousRef, prelude::*, query::QueryData, system::SystemChangeTick};
 use bevy_log::warn_once;
@@ -57,7 +57,7 @@ impl<'w, 's> StateInputContiguousItem<'w, 's> {
     }
 }
 
-/// Components that a body's row is made of.
+/// Components that define a body's row.
 #[derive(QueryData)]
 #[query_data(contiguous(mutable))]
 pub(crate) struct BodyInput {
@@ -85,7 +85,7 @@ pub(crate) struct MotionInput {
 }
 
 impl MotionInputItem<'_, '_> {
-    /// No such component.
+    /// None of these components.
     const NONE: Self = Self {
         gravity_scale: None,
         linear_damping: None,
@@ -115,8 +115,8 @@ impl<'w, 's> BodyInputContiguousItem<'w, 's> {
 }
 
 impl<'w, 's> MotionInputContiguousItem<'w, 's> {
-    /// Whether no body of the table has such a component. Checking each body would take a
-    /// quarter of the time.
+    /// Whether no body of the table has any of these components. Checking each body would take a quarter of
+    /// the time.
     fn is_none(&self) -> bool {
         let speeds = self.max_speed.is_none() && self.max_angular_speed.is_none();
         let damping = self.linear_damping.is_none() && self.angular_damping.is_none();
@@ -140,7 +140,7 @@ impl<'w, 's> MotionInputContiguousItem<'w, 's> {
     }
 }
 
-/// A finite value, at least 0. Negative values and NaN become 0, infinity the largest number.
+/// A finite value of at least 0. Negative values and NaN become 0, infinity becomes the largest number.
 fn positive(value: Option<Scalar>) -> f32 {
     match value.map(to_f32) {
         Some(v) if v > 0.0 => v.min(f32::MAX),
@@ -148,7 +148,7 @@ fn positive(value: Option<Scalar>) -> f32 {
     }
 }
 
-/// Gravity for the kernel. A value that is not finite would disable all bodies, so it becomes zero.
+/// Gravity for the kernel. A value that is not finite becomes zero, because it would disable all bodies.
 fn finite_gravity(gravity: &Gravity) -> KernelVector {
     let vector = vector_to_kernel(gravity.0);
     if vector.is_finite() {
@@ -177,8 +177,8 @@ struct Change {
     pushed: bool,
 }
 
-/// Writes a body's components to the table: its pose if it differs from the one the engine wrote, centre of
-/// mass, and velocity. A body that is not finite is reset and disabled.
+/// Writes a body's components to the table: the pose if it differs from the engine's last write, the centre
+/// of mass, and the velocity. A body that is not finite is reset and disabled.
 #[inline]
 fn read_in(entity: Entity, body: &StateInputItem, tables: &mut Tables, commands: &mut Commands) -> Change {
     let id = body.id.0;
@@ -232,8 +232,8 @@ type Watched = (
     Ref<'static, AngularVelocity>,
 );
 
-/// Applies changes of the app to static and sleeping bodies. Moved ones wake the bodies they touch, and wake
-/// themselves if they can.
+/// Applies changes of the app to static and sleeping bodies. A body that the app moved wakes the bodies that
+/// it touches, and wakes itself unless it is static.
 pub(crate) fn wake_changed(
     watched: Query<Watched, With<BodyId>>,
     states: Query<StateInput>,
@@ -244,8 +244,8 @@ pub(crate) fn wake_changed(
     system: SystemChangeTick,
 ) {
     let written = tables.bodies.written;
-    // Bodies put to sleep in this step fell asleep with this velocity and gravity: a level may be
-    // spawned asleep.
+    // Bodies that were put to sleep in this step fell asleep with this velocity and gravity, because a level
+    // may be spawned asleep.
     let flipped = tables.bodies.table.flipped_set();
     let mut wake = |entity: Entity| {
         let Ok(body) = states.get(entity) else { return };
@@ -253,7 +253,7 @@ pub(crate) fn wake_changed(
         if id == NONE {
             return;
         }
-        // Awake bodies are read later, but a kinematic one may come to rest before.
+        // Awake bodies are read later, but a kinematic body may come to rest before that.
         let row = &tables.bodies.table[id];
         if row.awake && row.kind != BodyKind::Kinematic {
             return;
@@ -298,8 +298,8 @@ pub(crate) fn wake_changed(
     }
 }
 
-/// A kinematic body is awake exactly while it moves. One whose velocity is zero rests; one with a velocity
-/// was woken by the change.
+/// A kinematic body is awake exactly while it moves. A body with zero velocity is put to rest here; a body
+/// with a velocity was already woken by the change.
 pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, mut tables: Tables) {
     let at_rest = |entity: Entity| {
         let velocity = query.get(entity).map(|(v, w)| (vector_to_kernel(v.0), angular_to_kernel(w.0)));
@@ -311,14 +311,15 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
     ids.extend(table.awake_kinematic().filter(|id| at_rest(entities[*id as usize])));
     for &id in &ids {
         tables.contact_manager().set_kinematic_awake(id, false);
-        // A resting body has no velocity. With the old one in the table, setting it again would be no change.
+        // A resting body has no velocity in the table. Otherwise setting the old velocity again would not be
+        // a change.
         tables.bodies.table.set_velocity(id, Velocity::default());
     }
     tables.bodies.ids = ids;
 }
 
-/// Kinematic bodies that rested when the step began, and got a velocity since: they move in this step.
-/// Dynamic ones that sleep wake in the next.
+/// Wakes kinematic bodies that rested at the start of the step and got a velocity since: they move in this
+/// step. Sleeping dynamic bodies wake in the next step.
 pub(crate) fn wake_kinematic_late(
     query: Query<(Ref<BodyId>, Ref<LinearVelocity>, Ref<AngularVelocity>)>,
     mut tables: Tables,
@@ -353,12 +354,12 @@ pub(crate) fn wake_kinematic_late(
     tables.bodies.ids = woken;
 }
 
-/// Components that define when a body counts as at rest, and for how long it has rested.
+/// Components that define when a body is at rest, and for how long it has rested.
 type RestInput = (Option<&'static SleepThreshold>, Has<SleepingDisabled>, Option<Ref<'static, SleepTimer>>);
 
-/// Reads pose, velocity and rest threshold of every awake body, before the step computes anything from them.
+/// Reads pose, velocity and sleep threshold of every awake body, before the step computes anything from them.
 ///
-/// The thread pool finds the bodies whose components differ from the table, without writing. Those bodies are
+/// The thread pool finds the bodies whose components differ from the table, without writing. These bodies are
 /// then read in the order of ids.
 pub(crate) fn read_awake(
     query: Query<(StateInput, RestInput)>,
@@ -415,7 +416,7 @@ struct Differs<'a> {
 }
 
 impl Differs<'_> {
-    /// Adds the ids of such bodies among some rows of a table of components.
+    /// Adds the ids of these bodies among some rows of a table of components.
     fn among(
         &self,
         states: &StateInputContiguousItem,
@@ -460,8 +461,9 @@ fn rest_speed(threshold: Option<&SleepThreshold>, sleepless: bool, unit: f32) ->
 
 /// Gives every awake body a row, and fills it.
 ///
-/// The thread pool walks whole tables of components where most bodies are awake. Where most sleep, the caller
-/// looks up entities. Rows are written by id either way, so the order of entities does not matter.
+/// If most bodies are awake, the thread pool iterates over whole tables of components. If most bodies sleep,
+/// the calling thread looks up entities. Rows are written by id in both cases, so the order of entities does
+/// not matter.
 pub(crate) fn gather_bodies(
     query: Query<(BodyInput, MotionInput)>,
     (gravity, threads): (Res<Gravity>, Res<Threads>),
@@ -519,7 +521,7 @@ pub(crate) fn gather_bodies(
     diagnostics.prepare_constraints += start.elapsed();
 }
 
-/// Results of one worker besides the rows it filled.
+/// Results of one worker, in addition to the filled rows.
 #[derive(Default)]
 pub(crate) struct Gathered {
     /// Number of rows.
@@ -531,7 +533,7 @@ pub(crate) struct Gathered {
     refused: Vec<u32>,
 }
 
-/// Inputs that are the same for all bodies.
+/// Inputs that are common to all bodies.
 struct Gather<'a> {
     gravity: KernelVector,
     table: &'a BodyTable,
@@ -555,7 +557,7 @@ impl Gather<'_> {
         if !finite {
             gathered.refused.push(id);
         }
-        // Bodies that were quarantined in this step do not move until they leave.
+        // Bodies that were quarantined in this step do not move until they are removed.
         if !finite || options.disabled {
             gathered.filled += usize::from(self.filler.fill(row, &FilledBody::at_rest()));
             return;

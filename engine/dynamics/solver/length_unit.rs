@@ -1,7 +1,7 @@
-//! A warning where gravity and the sizes of colliders say that the length unit was forgotten.
+//! A warning if gravity and the sizes of colliders indicate that the length unit was forgotten.
 //!
-//! Only worlds are told that no app builds on purpose: every collider on a dynamic or kinematic body is out
-//! of range, and gravity agrees. One collider of an ordinary size ends the search.
+//! The warning is only for worlds that no app builds on purpose: every collider on a dynamic or kinematic
+//! body is out of range, and gravity agrees. One collider of ordinary size ends the search.
 
 use bevy_ecs::prelude::*;
 use bevy_log::warn;
@@ -17,33 +17,32 @@ use crate::{
     schedule::Physics,
 };
 
-/// How long physics runs before it is judged: the first bodies of a level may be its largest.
+/// Duration of the search: the first bodies of a level may be its largest.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Thickness in length units from which no body falls under gravity in metres: a thing of 50 m in
-/// every direction.
+/// Thickness in length units from which bodies do not fall under gravity in metres: 50 m in every direction.
 const HUGE: Scalar = 50.0;
 
-/// Gravity in length units/s² from which it counts for [`HUGE`] bodies. That of the moon is more.
+/// Minimum gravity in length units/s² that applies to [`HUGE`] bodies. The moon has more.
 const FELT: Scalar = 1.0;
 
-/// Length in length units from which a body is large where gravity is [`HEAVY`]: a lorry.
+/// Length in length units from which a body is large under [`HEAVY`] gravity: a lorry.
 const LARGE: Scalar = 5.0;
 
-/// Gravity in length units/s² that no game in metres has: 20 times the earth's.
+/// Gravity in length units/s² that no game in metres has: 20 times the earth's gravity.
 const HEAVY: Scalar = 200.0;
 
-/// Length in length units up to which a body is small where gravity is [`FAINT`]: a coin or a die.
+/// Length in length units up to which a body is small under [`FAINT`] gravity: a coin or a die.
 const SMALL: Scalar = 0.05;
 
-/// Gravity in length units/s² that is less than on any moon that one would stand on: a fiftieth
-/// of the earth's.
+/// Gravity in length units/s² that is too small for any moon that a game would use: a fiftieth of the earth's
+/// gravity.
 const FAINT: Scalar = 0.2;
 
-/// The sizes of colliders, in units of length of the app.
+/// The sizes of colliders, in the app's units of length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sizes {
-    /// The least extent of a collider in any direction.
+    /// The smallest extent of a collider in any direction.
     thinnest: Scalar,
     /// The length of the shortest collider.
     shortest: Scalar,
@@ -67,17 +66,17 @@ impl Sizes {
     }
 }
 
-/// What is wrong with the length unit.
+/// The error in the length unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Verdict {
-    /// A length unit is much longer.
+    /// The length unit should be much longer.
     TooShort,
-    /// A length unit is much shorter.
+    /// The length unit should be much shorter.
     TooLong,
 }
 
-/// Judges a world by its gravity and the sizes of its moving colliders, all in units of length of the app.
-/// `None` if there may be a reason for them.
+/// Judges a world by its gravity and the sizes of its moving colliders, all in the app's units of length.
+/// `None` if the values may be intended.
 fn judge(sizes: Sizes, gravity: Scalar, unit: Scalar) -> Option<Verdict> {
     let Sizes { thinnest, shortest, longest } = sizes;
     if !longest.is_finite() {
@@ -93,24 +92,24 @@ fn judge(sizes: Sizes, gravity: Scalar, unit: Scalar) -> Option<Verdict> {
     }
 }
 
-/// How far the search is.
+/// The state of the search.
 #[derive(Resource, Clone, Copy, Default)]
 pub(super) enum Search {
-    /// No collider on a moving body was seen.
+    /// No collider on a moving body was seen yet.
     #[default]
     Waiting,
-    /// All colliders are out of range since this time of physics.
+    /// All colliders are out of range since this physics time.
     Suspicious(Duration),
-    /// The world is an ordinary one, or the app was told.
+    /// The world is ordinary, or the warning was given.
     Over,
 }
 
-/// Whether there is more to search.
+/// Whether the search continues.
 pub(super) fn goes_on(search: Res<Search>) -> bool {
     !matches!(*search, Search::Over)
 }
 
-/// Warns once if all that moves is out of range for a second.
+/// Warns once if all moving bodies are out of range for a second.
 pub(super) fn check_length_unit(
     mut search: ResMut<Search>,
     colliders: Query<(&Collider, &ColliderOf), Without<ColliderDisabled>>,

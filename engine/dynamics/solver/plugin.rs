@@ -88,12 +88,12 @@ impl KindVisitor for Graphs {
     }
 }
 
-/// Warns once where everything that moves is too large or too small for gravity, so that
-/// [`PhysicsLengthUnit`] must have been forgotten: a 2D game in pixels with a length unit of 1, or a game in
-/// metres with one of 100.
+/// Warns once if all moving bodies are too large or too small for gravity. Then [`PhysicsLengthUnit`] was
+/// probably forgotten: in a 2D game in pixels with a length unit of 1, or in a game in metres with a length
+/// unit of 100.
 ///
-/// Looks at the first second of physics at most, and no further once it sees one dynamic or kinematic
-/// collider of an ordinary size. Beyond Avian.
+/// It checks the first second of physics at most, and stops at the first dynamic or kinematic collider of
+/// ordinary size. Beyond Avian.
 #[cfg(feature = "default-collider")]
 pub struct LengthUnitCheckPlugin;
 
@@ -113,7 +113,8 @@ pub struct SolverPlugin {
 }
 
 impl SolverPlugin {
-    /// The plugin with a [`PhysicsLengthUnit`] of `unit`; the default leaves the resource as it is, or 1.
+    /// The plugin with a [`PhysicsLengthUnit`] of `unit`. The default plugin keeps the existing resource,
+    /// or 1.
     pub fn new_with_length_unit(unit: Scalar) -> Self {
         Self { length_unit: Some(unit) }
     }

@@ -1,4 +1,4 @@
-//! From rows to components, and sleep timers.
+//! Writes rows to components, and updates sleep timers.
 
 use bevy_ecs::{
     change_detection::ContiguousMut,
@@ -30,7 +30,7 @@ use crate::{
     threads::Threads,
 };
 
-/// Components that a body's motion is written to.
+/// Components that receive a body's motion.
 type Output = (
     &'static BodyId,
     &'static mut Position,
@@ -87,14 +87,15 @@ pub(crate) fn note_moved_within(mut moved: MovedWithin, system: SystemChangeTick
     moved.bodies.read = system.this_run();
 }
 
-/// Records those that it changed while bodies were finished. Their previous pose is not known any more.
+/// Records awake bodies whose pose the app changed while bodies were finished. Their previous pose is
+/// unknown.
 pub(crate) fn note_moved_late(mut moved: MovedWithin, system: SystemChangeTick) {
     let since = Since::new(moved.bodies.read, system);
     moved.note(since, |_, _| true);
 }
 
 /// Keeps bodies that the app moved within the step at the app's pose, plus their displacement in the step.
-/// The tables keep the simulated pose: the next step treats the difference as any other change by the app.
+/// The tables keep the simulated pose: the next step treats the difference like any other change by the app.
 pub(crate) fn keep_moved_within(
     mut poses: Query<(&mut Position, &mut Rotation)>,
     solver: Res<StepSolver>,
@@ -111,7 +112,7 @@ pub(crate) fn keep_moved_within(
         let moved =
             BodyPose { center, rotation: turn.mul(from.rotation).renormalized(), ..Default::default() };
         let moved = moved.frame(table[id].local_center);
-        // A pose that is not finite is left for the next step to refuse.
+        // A pose that is not finite is left unchanged, and the next step refuses it.
         let (position, rotation) =
             if body.is_moved() && is_finite(&moved) { pose_from_kernel(moved) } else { (position, rotation) };
         pose.0.set_if_neq(position);
@@ -122,8 +123,8 @@ pub(crate) fn keep_moved_within(
 
 /// Adds the displacement of each awake body to its pose, and updates sleep timers.
 ///
-/// A body whose result is not finite keeps its pose, stops, and is disabled with one warning, so that NaN
-/// does not spread.
+/// A body with a result that is not finite keeps its pose, stops, and is disabled with one warning. This
+/// prevents NaN from spreading.
 pub(crate) fn finish_bodies(
     own: Query<&BodyId, (With<CustomPositionIntegration>, Without<RigidBodyDisabled>)>,
     (mut solver, threads): (ResMut<StepSolver>, Res<Threads>),
@@ -150,7 +151,7 @@ pub(crate) fn finish_bodies(
     diagnostics.finalize += start.elapsed();
 }
 
-/// Writes pose and velocity of each awake body, where they changed.
+/// Writes pose and velocity of each awake body if they changed.
 pub(crate) fn scatter_bodies(
     mut outputs: Query<Output, Without<RigidBodyDisabled>>,
     (solver, threads): (Res<StepSolver>, Res<Threads>),
@@ -182,8 +183,8 @@ pub(crate) fn scatter_bodies(
     diagnostics.finalize += start.elapsed();
 }
 
-/// Resets the displacement of a body with [`CustomPositionIntegration`]. Returns its id and sleep timer, by
-/// its velocity.
+/// Resets the displacement of a body with [`CustomPositionIntegration`]. Returns its id and its sleep timer,
+/// which depends on its velocity.
 fn keep_in_place(id: u32, solver: &mut Solver, bodies: &Bodies, dt: f32) -> Option<(u32, f32)> {
     let row = if id == NONE { 0 } else { bodies.table.row(id) };
     if row == 0 {
@@ -196,7 +197,7 @@ fn keep_in_place(id: u32, solver: &mut Solver, bodies: &Bodies, dt: f32) -> Opti
     Some((id, if rests { body.sleep_timer + dt } else { 0.0 }))
 }
 
-/// Writes the bodies of one table of components, by all workers.
+/// Writes the bodies of one table of components, on all workers.
 #[expect(clippy::type_complexity, reason = "an item of a query")]
 fn put_table(
     (mut ids, position, rotation, linear, angular, timer): (
@@ -232,7 +233,7 @@ fn put_table(
     });
 }
 
-/// Results of the bodies' motion.
+/// The computed motion of bodies.
 struct Results<'a> {
     bodies: &'a Bodies,
     rows: &'a BodyRows,

@@ -1,5 +1,5 @@
-//! Soft constraints: a spring given by damping ratio and frequency, and its coefficients for a
-//! velocity constraint.
+//! Soft constraints: a spring defined by damping ratio and frequency, and its coefficients for a velocity
+//! constraint.
 
 use bevy_reflect::Reflect;
 #[cfg(feature = "serialize")]
@@ -7,12 +7,12 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 
 use crate::math::{Scalar, TAU};
 
-/// Maximum of both values of [`SoftnessParameters`]: far above what a step resolves, far below where
-/// squares overflow.
+/// Maximum of both values of [`SoftnessParameters`]: far above the values that a step resolves, and far below
+/// the values whose squares overflow.
 const LIMIT: Scalar = 1e9;
 
-/// A damped spring, given by frequency and damping ratio instead of stiffness, so that it behaves alike
-/// for every mass.
+/// A damped spring, defined by frequency and damping ratio instead of stiffness. It behaves alike for all
+/// masses.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -24,7 +24,7 @@ pub struct SoftnessParameters {
     angular_frequency: Scalar,
 }
 
-/// Clamps stored values to the same limits as others.
+/// Clamps deserialized values to the same limits as other values.
 #[cfg(feature = "serialize")]
 fn deserialize_sanitized<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Scalar, D::Error> {
     let value: Scalar = serde::Deserialize::deserialize(deserializer)?;
@@ -33,8 +33,8 @@ fn deserialize_sanitized<'de, D: serde::Deserializer<'de>>(deserializer: D) -> R
 }
 
 impl SoftnessParameters {
-    /// A spring with damping ratio ζ (0 oscillates for ever, 1 returns fastest without oscillation, above 1
-    /// creeps) and undamped frequency in Hz.
+    /// A spring with damping ratio ζ (0 oscillates forever, 1 returns fastest without oscillation, above 1 is
+    /// slower) and an undamped frequency in Hz.
     ///
     /// Negative and NaN values count as 0, values above 10⁹ as 10⁹.
     pub fn new(damping_ratio: Scalar, frequency_hz: Scalar) -> Self {
@@ -66,8 +66,8 @@ impl SoftnessParameters {
     /// bias = ω / a1       mass_scale = a2 a3       impulse_scale = a3
     /// ```
     ///
-    /// Any input is valid: a spring without frequency has no effect, and a step that is zero, negative or NaN
-    /// counts as no step.
+    /// Any input is valid: a spring with zero frequency has no effect, and a step that is zero, negative or
+    /// NaN counts as no step.
     pub fn compute_coefficients(self, delta_secs: Scalar) -> SoftnessCoefficients {
         let omega = self.angular_frequency;
         if omega == 0.0 {
@@ -77,13 +77,13 @@ impl SoftnessParameters {
         let a1 = 2.0 * self.damping_ratio + h * omega;
         let a2 = h * omega * a1;
         let a3 = 1.0 / (1.0 + a2);
-        // Without damping and step a1 and a2 are 0: there is no impulse, for any bias.
+        // Without damping and step, a1 and a2 are 0: there is no impulse for any bias.
         let bias = if a1 > 0.0 { omega / a1 } else { 0.0 };
         SoftnessCoefficients { bias, mass_scale: a2 * a3, impulse_scale: a3 }
     }
 }
 
-/// `value` within 0 to [`LIMIT`]; NaN is 0.
+/// `value` clamped to 0 … [`LIMIT`]; NaN becomes 0.
 fn sanitized(value: Scalar) -> Scalar {
     if value > 0.0 { value.min(LIMIT) } else { 0.0 }
 }
@@ -96,9 +96,9 @@ fn sanitized(value: Scalar) -> Scalar {
 pub struct SoftnessCoefficients {
     /// Bias velocity per length of error, in 1/s.
     pub bias: Scalar,
-    /// Share of the effective mass, 0 to 1.
+    /// Fraction of the effective mass, 0 to 1.
     pub mass_scale: Scalar,
-    /// Share of the accumulated impulse that is subtracted, 0 to 1. The sum with `mass_scale` is 1.
+    /// Fraction of the accumulated impulse that is subtracted, 0 to 1. The sum with `mass_scale` is 1.
     pub impulse_scale: Scalar,
 }
 

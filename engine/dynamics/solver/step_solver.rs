@@ -19,24 +19,24 @@ impl Default for StepSolver {
     }
 }
 
-/// The engine's own systems in the schedule of the substeps. While the schedule holds no others and has no
-/// run conditions, one call of the kernel per substep replaces it.
+/// The engine's own systems in the substep schedule. While the schedule contains no other systems and no run
+/// conditions, one kernel call per substep replaces it.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct OwnSubstepSystems {
-    /// Whether bodies are integrated in this schedule, and whether contacts are solved.
+    /// Whether this schedule integrates bodies, and whether it solves contacts.
     pub(crate) integrates: bool,
     pub(crate) solves: bool,
     systems: Vec<TypeId>,
 }
 
 impl OwnSubstepSystems {
-    /// Records a system that is added.
+    /// Records an added system.
     pub(crate) fn note<M>(&mut self, system: impl IntoSystem<(), (), M>) {
         self.systems.push(system.system_type_id());
     }
 
-    /// Whether a schedule holds exactly these systems, without run conditions. False for a schedule that was
-    /// built already, since its conditions cannot be read: running the schedule gives the same bits.
+    /// Whether a schedule contains exactly these systems, without run conditions. False for a schedule that
+    /// was already built, because its conditions cannot be read. Running the schedule gives the same bits.
     pub(crate) fn are_all_of(&self, schedule: &Schedule) -> bool {
         if schedule.systems().is_ok() {
             return false;

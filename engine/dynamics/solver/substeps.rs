@@ -24,27 +24,27 @@ use crate::{
     threads::Threads,
 };
 
-/// Wakes the threads at the start of a step if the last one had much to do: waking takes longer
-/// than most stages.
+/// Wakes the threads at the start of a step if the last step had much work, because waking takes longer than
+/// most stages.
 pub(crate) fn wake_workers(mut threads: ResMut<Threads>, contacts: Res<Contacts>, workers: Res<WorkerCount>) {
     threads.wake(contacts.table.active_len(), workers.0, || workers.resolve());
 }
 
-/// The friction centre fades out a separated point over this distance, times the length unit. Less makes
-/// friction jump as points open and close.
+/// The friction centre fades out a separated point over this distance, times the length unit. A smaller value
+/// makes friction jump when points open and close.
 const FRICTION_FADE: f32 = (4.0 * LINEAR_SLOP) as f32;
 
-/// Minimum approach speed of a blow, times the length unit. Less strikes what comes to rest, more tilts what
-/// falls flat from low heights.
+/// Minimum approach speed of a blow, times the length unit. A smaller value strikes bodies that come to rest,
+/// a larger value tilts bodies that fall flat from low heights.
 const BLOW_SPEED: f32 = 0.5;
 
 /// Light bodies that a heavy one presses into each other by more than this, times the length unit, get more
-/// mass in the solver. Less adds more mass, more lets heavy bodies sink into light ones.
+/// mass in the solver. A smaller value adds more mass, a larger value lets heavy bodies sink into light ones.
 const MAX_SAG: f32 = LINEAR_SLOP as f32;
 
-/// Round bodies that roll no faster than this, times the length unit, in m/s, meet full rolling resistance;
-/// at twice this speed none. Less keeps piles of balls and capsules awake, more slows down what a game
-/// rolls on purpose.
+/// Full rolling resistance acts on round bodies that roll no faster than this, times the length unit, in m/s.
+/// At twice this speed there is none. A smaller value keeps piles of balls and capsules awake, a larger value
+/// slows down bodies that a game rolls on purpose.
 const ROLL_SPEED: f32 = 0.2;
 
 fn softness(c: SoftnessCoefficients) -> Softness {
@@ -55,13 +55,13 @@ fn softness(c: SoftnessCoefficients) -> Softness {
     }
 }
 
-/// A setting that is at least 0, clamped so that it can be multiplied. A negative or NaN setting
-/// becomes the default.
+/// A setting of at least 0, clamped to a range that can be multiplied. A negative or NaN setting becomes the
+/// default.
 fn setting(value: Scalar, default: Scalar) -> f32 {
     to_f32(if value >= 0.0 { value.min(1.0e18) } else { default })
 }
 
-/// Computes the parameters of all rows in this step.
+/// Computes the parameters that all rows share in this step.
 pub(crate) fn prepare_params(
     mut solver: ResMut<StepSolver>,
     config: Option<Res<SolverConfig>>,
@@ -116,15 +116,15 @@ pub(crate) fn prepare_rows(
         &others
     };
     // SAFETY: the engine has one table of contacts, one graph and one table of bodies, which apps cannot
-    // reach. It changes contacts, colours and the kinds of bodies only through `ContactManager`. What is left
-    // without contacts is as it was.
+    // reach. It changes contacts, colours and the kinds of bodies only through `ContactManager`.
+    // `without_contacts` leaves all other constraints unchanged.
     unsafe { kernel.build_rows(&input, colors, params, &threads.pool) };
     diagnostics.contact_constraint_count = kernel.manifold_count() as u32;
     diagnostics.prepare_constraints += start.elapsed();
 }
 
-/// Runs the substeps: by the kernel while only the engine's own systems are in the schedule, otherwise by the
-/// schedule. The clock is already at the end of the first substep.
+/// Runs the substeps: in the kernel while the schedule contains only the engine's own systems, otherwise in
+/// the schedule. The clock is already at the end of the first substep.
 pub(crate) fn run_substeps(world: &mut World) {
     let own = world.resource::<OwnSubstepSystems>();
     let (integrates, solves) = (own.integrates, own.solves);
@@ -165,7 +165,7 @@ pub(crate) fn run_substeps(world: &mut World) {
     lend_again(world);
 }
 
-/// Runs the schedule for each substep. The generic clock is the substeps' meanwhile.
+/// Runs the schedule for each substep. During the run, the generic clock is the substep clock.
 fn run_schedule(world: &mut World, substeps: u32, mut next: impl FnMut(&mut World)) {
     let outer = *world.resource::<Time>();
     for substep in 0..substeps {

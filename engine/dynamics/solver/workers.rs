@@ -6,16 +6,16 @@ use bevy_reflect::prelude::*;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_tasks::ComputeTaskPool;
 
-/// Number of threads of a step, including the one that runs the schedule. Results have the same bits
-/// with any number.
+/// Number of threads of a step, including the thread that runs the schedule. Results have the same bits with
+/// any number of threads.
 ///
-/// With 0, the default, it is the number of cores of the machine for this process, but at most the number of
-/// threads in Bevy's compute task pool plus one: on two cores Bevy gives that pool one thread, so a step uses
-/// both. 1 keeps physics on the calling thread. More than 256 count as 256.
+/// With 0, the default, it is the number of CPU cores available to this process, but at most the number of
+/// threads in Bevy's compute task pool plus one. (On two cores Bevy's pool has one thread, and a step uses
+/// both cores.) 1 keeps physics on the calling thread. Values above 256 count as 256.
 ///
-/// The threads belong to the engine. The first step with more than a thousand contacts of awake bodies, or
-/// with 64 characters or dynamic movers, starts them. They work in such steps, and where 256 colliders move
-/// far, and are parked otherwise. Without the feature `parallel` there are none.
+/// The engine owns the threads. They start in the first step with more than a thousand contacts of awake
+/// bodies, or with 64 characters or dynamic movers. They work in these steps, and in steps where 256
+/// colliders move far, and are parked otherwise. Without the feature `parallel` there are no threads.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -39,13 +39,14 @@ impl WorkerCount {
     }
 }
 
-/// Number of contacts per SIMD row. Results have the same bits with any. For comparing and measuring.
+/// Number of contacts per SIMD row. Results have the same bits with any width. For comparisons and
+/// measurements.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Resource, Debug, Default, PartialEq)]
 pub enum RowWidth {
-    /// As many as the CPU supports: eight with AVX2, else four.
+    /// As many as the CPU supports: eight with AVX2, otherwise four.
     #[default]
     Widest,
     /// Four.

@@ -1,4 +1,4 @@
-//! Synchronisation of poses and transforms in headless apps. The tests play the solver.
+//! Synchronisation of poses and transforms in headless apps. The tests replace the solver.
 
 mod tree;
 
@@ -25,7 +25,7 @@ use crate::{
     schedule::PhysicsSystems,
 };
 
-/// Poses for the solver to write in the next step.
+/// Poses that the test's solver writes in the next step.
 #[derive(Resource, Default)]
 struct Moves(Vec<(Entity, Vector, Option<Rotation>)>);
 
@@ -115,7 +115,7 @@ fn assert_turned(app: &App, entity: Entity, expected: f32) {
     assert!(angle.abs() < 1e-3, "{angle} away");
 }
 
-/// The global transform of an entity at `position`, by Bevy.
+/// Checks that Bevy's global transform of an entity is at `position`.
 #[track_caller]
 fn assert_shown_at(app: &mut App, entity: Entity) {
     let shown = app
@@ -243,7 +243,7 @@ fn a_body_below_a_scaled_and_turned_parent() {
     step(&mut app);
     assert_at(&app, body, at(0.0, 2.0));
     assert_turned(&app, body, 0.2);
-    // Marking it as changed does not.
+    // Marking the transform as changed does not.
     let held = (bits(position(&app, body)), turn_bits(rotation(&app, body)));
     set(&mut app, parent, parent_at);
     step(&mut app);
@@ -268,13 +268,13 @@ fn nested_bodies_move_independently_in_the_simulation_and_together_by_transform(
     }
     step(&mut app);
     assert_eq!(bits(position(&app, inner)), held, "reading back perturbs");
-    // The app moves the outer one: all follow.
+    // The app moves the outer body: all bodies follow.
     let shifted = transform(&app, outer).with_translation(Vec3::new(6.0, 5.0, 0.0));
     set(&mut app, outer, shifted);
     step(&mut app);
     assert_at(&app, inner, at(3.0, 0.0));
     assert_at(&app, innermost, at(0.0, -1.0));
-    // The app sets the position of the outer one: the others stay.
+    // The app sets the position of the outer body: the others stay.
     set(&mut app, outer, Position(at(0.0, 0.0)));
     step(&mut app);
     assert_at(&app, inner, at(3.0, 0.0));
@@ -433,7 +433,7 @@ proptest! {
         prop_assert!(read.distance(p) < 2e-3);
         prop_assert!(turned.unwrap().angle_between(r).abs() < 2e-3);
         prop_assert_eq!(written.scale, leaf[0].scale);
-        // Writing again changes nothing, so a body at rest never counts as changed.
+        // Writing again changes nothing: a body at rest never counts as changed.
         let again = write_pose(Some(&frame), &written, p, r);
         prop_assert!(same_translation(&again, &written) && same_rotation(&again, &written));
     }

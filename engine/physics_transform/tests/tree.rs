@@ -1,11 +1,11 @@
-//! The tree of the hierarchy, the links of colliders to bodies, and the entities that walks visit.
+//! The transform tree, the links of colliders to bodies, and the entities that traversals visit.
 
 use super::*;
 
 #[test]
 fn links_follow_the_hierarchy() {
     let mut app = app();
-    // The child comes first.
+    // The child is spawned first.
     let collider = app.world_mut().spawn((ColliderMarker, place(1.0, 0.0))).id();
     let middle = app.world_mut().spawn(place(0.0, 0.0)).id();
     let body = app.world_mut().spawn((RigidBody::Dynamic, place(10.0, 0.0))).id();
@@ -137,7 +137,7 @@ fn a_body_with_nothing_but_colliders_below_is_not_walked() {
     assert_shown_at(&mut app, body);
     assert_at(&app, collider, at(4.0, 0.0));
     assert_eq!(visited(&app), before);
-    // It becomes a body itself.
+    // The collider becomes a body itself.
     app.world_mut().entity_mut(collider).insert(RigidBody::Dynamic);
     step(&mut app);
     move_body(&mut app, body, at(5.0, 0.0), None);
@@ -225,7 +225,7 @@ proptest! {
     }
 }
 
-/// Every collider is linked to the nearest body, found by brute force.
+/// Checks that every collider is linked to the nearest body, which is found by brute force.
 fn check_links(app: &App, all: &[Entity]) {
     let world = app.world();
     for &entity in all.iter().filter(|&&e| world.get_entity(e).is_ok()) {

@@ -6,15 +6,15 @@ use super::polygonal::Edge;
 use crate::math::{Pose, Vector, max};
 use crate::tuning::manifold::FLAT;
 
-/// The shape of the reference edge; as a number, its place in arrays of both.
+/// The shape of the reference edge; as a number, its index in arrays of both shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     A,
     B,
 }
 
-/// A reference edge with its unit normal and the incident edge, both in A's frame, and what else the
-/// points depend on.
+/// A reference edge with its unit normal and the incident edge, both in A's frame, and the limits for the
+/// points.
 pub(super) struct Facing {
     pub(super) side: Side,
     pub(super) normal: Vector,
@@ -55,7 +55,7 @@ impl Facing {
         let along = offsets.map(|w| w.dot(tangent));
         let height = offsets.map(|w| w.dot(self.normal));
         let nothing = FLAT as f32 * (length + (along[1] - along[0]).abs());
-        // The closest end is the lower one. Of an edge wholly beside the reference it is the end nearer to
+        // The closest end is the lower end. For an edge wholly beside the reference it is the end nearer to
         // the corner, since level edges have no lower end.
         let beside = along[1] > length || along[0] < 0.0;
         let end = if beside {
@@ -81,7 +81,7 @@ impl Facing {
         self.edges(length, along, height, end, out);
     }
 
-    /// One point between a corner of the reference edge and one of the incident edge.
+    /// One point between a corner of the reference edge and a corner of the incident edge.
     pub(super) fn corners(&self, own_end: usize, end: usize, out: &mut LocalManifold) {
         let (p, q) = (self.reference.ends[own_end], self.incident.ends[end]);
         let feature = self.feature(self.reference.indices[own_end], self.incident.indices[end]);
@@ -122,7 +122,7 @@ impl Facing {
     }
 
     /// Adds the point at position `t` of the reference edge, where the incident edge is `height` over it, if
-    /// that is near enough. `end` is the end of the reference edge that it is nearer to.
+    /// this is near enough. `end` is the nearer end of the reference edge.
     #[inline]
     fn push(&self, end: usize, t: f32, height: f32, out: &mut LocalManifold) {
         let separation = height - self.limits.radii[0] - self.limits.radii[1];
@@ -157,7 +157,7 @@ mod tests {
     use crate::math::{Pose, Rot, Vector};
     use crate::shape::{Cuboid, Shape};
 
-    /// The point was at the far end of the side, where the other box is not.
+    /// The point was at the far end of the side, away from the other box.
     #[test]
     fn boxes_whose_corners_are_level_meet_at_the_corners() {
         let box_of = |x: f32, y: f32| Shape::Cuboid(Cuboid { half: Vector { x, y } });

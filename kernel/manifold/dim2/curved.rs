@@ -1,8 +1,8 @@
-//! Ellipses against everything else: one point, since two would come and go on a curve.
+//! Ellipses against all other shapes: one point, since two would come and go on a curve.
 //!
-//! Along the best axis the farthest points of both shapes are across from each other. So the side to which
-//! they are shifted tells to which side the axis has to turn, and it is found by bisection. Edges of polygons
-//! are axes of their own.
+//! Along the best axis the support points of both shapes are opposite each other. So the direction of their
+//! lateral shift tells the direction in which the axis must turn, and bisection finds it. Edges of polygons
+//! are separate axes.
 
 use super::super::{LocalManifold, PairInput};
 use super::polygonal::Polygonal;
@@ -12,7 +12,7 @@ use crate::tuning::contact::DEEP;
 use crate::tuning::manifold::ALIKE;
 use crate::tuning::sweeps::ROUNDS;
 
-/// A round shape by its farthest points.
+/// A round shape, given by its support function.
 pub(super) trait Rounded {
     /// The point of the core that is farthest along a unit direction.
     fn farthest(&self, direction: Vector) -> Vector;
@@ -20,7 +20,7 @@ pub(super) trait Rounded {
     fn radius(&self) -> f32;
     /// The radius of curvature of the surface with a normal.
     fn curvature(&self, normal: Vector) -> f32;
-    /// Half sizes of the ellipse that it is or resembles. Its normals are tried.
+    /// Half sizes of the ellipse that the shape is or resembles. The normals of this ellipse are tried.
     fn half(&self) -> Vector {
         Vector::ONE
     }
@@ -56,7 +56,7 @@ impl Pair<'_> {
         self.input.pose.transform(self.b.support(self.input.pose.rotation.inverse_rotate(-normal)))
     }
 
-    /// Fills `out` from a unit normal, a point of A's core and that of B, and A's radii: around its core, and
+    /// Fills `out` from a unit normal, the points on A's core and on B, and A's radii: around its core, and
     /// of curvature.
     fn push(&self, normal: Vector, [on_a, on_b]: [Vector; 2], radii: [f32; 2], out: &mut LocalManifold) {
         let [radius, curvature] = radii;
@@ -78,8 +78,8 @@ impl Pair<'_> {
         if of_b.0 > of_a.0 { of_b.1 } else { of_a.1 }
     }
 
-    /// The largest separation from a core near the best of the normals that `fan` makes of directions around
-    /// an ellipse, and its normal. Those of a flat ellipse are close together.
+    /// The largest separation from a core near the best of the normals that `fan` computes from directions
+    /// around an ellipse, and its normal. The normals of a flat ellipse are close together.
     fn best_in_fan(&self, a: &impl Rounded, fan: impl Fn(Vector) -> Vector) -> (f32, Vector) {
         // A sixteenth of a turn.
         let (directions, step) = (16, Rot { cos: 0.923_879_5, sin: 0.382_683_43 });
@@ -102,8 +102,8 @@ impl Pair<'_> {
         normal.dot(self.lowest(normal) - point)
     }
 
-    /// The normal between two at which the farthest points are across from each other. `point`
-    /// gives that of A.
+    /// The normal between `low` and `high` at which the support points are opposite each other. `point` gives
+    /// A's.
     fn bisect(&self, mut low: Vector, mut high: Vector, point: impl Fn(Vector) -> Vector) -> Vector {
         for _ in 0..ROUNDS {
             let Some((middle, _)) = direction(low + high) else { break };
@@ -168,19 +168,19 @@ pub(super) fn collide(a: &Polygonal, b: &Curved, input: PairInput, out: &mut Loc
     let (before, after) = ((lowest - start).dot(axis) < 0.0, (lowest - end).dot(axis) > 0.0);
     let (mut normal, mut points) = (n, [lowest - n * most, lowest]);
     if before || after {
-        // The normals of a corner are those between its edges, counter-clockwise.
+        // The normals of a corner lie between its edges' normals, counter-clockwise.
         let (corner, outward) = if before { (start, -axis) } else { (end, axis) };
         let (mut low, mut high) =
             if before { (a.normals[a.previous(edge)], n) } else { (n, a.normals[a.next(edge)]) };
         if a.len() == 2 {
-            // Those of an end of a segment are half a turn.
+            // The normals of a segment's end span half a turn.
             let shift = (pair.lowest(outward) - corner).dot(outward.perp());
             (low, high) = if shift > 0.0 { (outward, high) } else { (low, outward) };
         }
         normal = pair.bisect(low, high, |_| corner);
         points = [corner, pair.lowest(normal)];
     }
-    // Of shapes that overlap deeply another corner or side may be the best.
+    // For deep overlap another corner or side may be the best.
     let separation = normal.dot(points[1] - points[0]);
     if separation < -DEEP * b.half.max_element() {
         let other = pair.best_normal(a);

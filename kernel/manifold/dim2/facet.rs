@@ -31,12 +31,12 @@ pub(in crate::manifold) fn borders([a, b]: [Vector; 2], normal: Vector) -> [Bord
     [end(a, -axis), end(b, axis)]
 }
 
-/// A convex shape that facets are collided with one after the other.
+/// A convex shape to collide with several facets in sequence.
 pub(in crate::manifold) struct Convex<'a> {
     pub shape: &'a Shape,
 }
 
-/// Calls `f` with a shape that is to be collided with facets.
+/// Calls `f` with a shape to collide with facets.
 pub(in crate::manifold) fn with_convex<R>(shape: &Shape, f: impl FnOnce(&Convex) -> R) -> R {
     f(&Convex::of(shape))
 }
@@ -47,7 +47,7 @@ impl<'a> Convex<'a> {
         Self { shape }
     }
 
-    /// Fills `out` with the contact of a segment as if there were no other; see [`collide_pair`].
+    /// Fills `out` with the contact of a single segment; see [`collide_pair`].
     pub fn collide_facet(&self, [a, b]: [Vector; 2], input: PairInput, out: &mut LocalManifold) {
         let facet = Shape::Segment(Segment { a, b });
         collide_pair(&facet, self.shape, input, out);
@@ -105,8 +105,8 @@ impl<'a> Convex<'a> {
     }
 }
 
-/// Puts the points that hold the same as all of `points` into a manifold: the outermost two, or the deepest
-/// and one of them where the middle hangs deeper.
+/// Reduces `points` to at most two points with the same support: the outermost two or, where the middle hangs
+/// deeper, the deepest and an outermost point.
 pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalManifold) {
     let tangent = out.normal.perp();
     let along = |p: &LocalPoint| p.point.dot(tangent);
@@ -148,7 +148,7 @@ fn collide_curved(
         (out.normal, out.radii) = (normal, [0.0, other.curvature_radius(facing)]);
         out.push(lowest - normal * (0.5 * separation), separation, 0);
     } else if separation < -DEEP * other.half.min_element() {
-        // What is deep under a side need not be over it.
+        // A shape deep under a side need not be over it.
         let [a, b] = corners;
         let segment = Shape::Segment(Segment { a, b });
         collide_pair(&segment, &Shape::Curved(*other), input, out);

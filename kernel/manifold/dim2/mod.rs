@@ -1,10 +1,10 @@
 //! Contacts of convex shapes in the plane: at most two points, midway between the surfaces.
 //!
-//! Every bounded shape is seen as a polygon with a radius: a ball has one vertex, a capsule or segment two,
-//! the others three or more; ellipses are curves. The function of a pair depends on the numbers of vertices
-//! only, so that seven kinds of shapes need five functions. (Capsules and rounded polygons as polygons with
-//! a radius, pairs of vertices as feature ids, and the early exit by a cached edge follow ideas of E.
-//! Catto's Box2D v3.)
+//! Every bounded shape is treated as a polygon with a radius: a ball has one vertex, a capsule or segment
+//! two, other polygons three or more; ellipses are curves. The function of a pair depends only on the numbers
+//! of vertices, so seven kinds of shapes need five functions. (Capsules and rounded polygons as polygons with
+//! a radius, pairs of vertices as feature ids, and the early exit by a cached edge follow ideas of E. Catto's
+//! Box2D v3.)
 
 mod clip;
 mod cuboids;
@@ -29,8 +29,8 @@ pub(super) use cuboids::collide as collide_cuboids;
 pub(super) use facet::{Convex, borders, face_normal, facing, few_points, with_convex};
 use polygonal::{Buffer, Polygonal};
 
-/// Does nothing, and returns infinity: shapes in the plane have no rims. `dim3` has the function for
-/// those in space.
+/// Does nothing, and returns infinity: shapes in the plane have no rims. `dim3` has the function for shapes
+/// in space.
 pub fn midstep_rims(_: [&Shape; 2], _: Rot, _: &Pose, _: Angular, _: f32, _: &mut LocalManifold) -> f32 {
     f32::INFINITY
 }
@@ -45,7 +45,7 @@ pub(super) fn rank(shape: &Shape) -> u8 {
     }
 }
 
-/// The feature of a point of the swapped pair: that of A is in the upper 16 bits.
+/// The feature of a point of the swapped pair: A's feature is in the upper 16 bits.
 pub(super) fn swapped_feature(feature: u32) -> u32 {
     feature.rotate_left(16)
 }
@@ -75,8 +75,8 @@ pub(super) fn dispatch(a: &Shape, b: &Shape, input: PairInput, out: &mut LocalMa
                 curved::collide(&a, b, input, out);
             }
         }
-        // Composites are collided part by part, and foreign shapes by their `ManifoldSource`. `collide`
-        // swaps the others.
+        // Composites are collided part by part, and foreign shapes by their `ManifoldSource`. `collide` swaps
+        // the other pairs.
         (_, Composite(_) | Foreign(_) | HalfSpace(_)) | (Curved(_) | Composite(_) | Foreign(_), _) => {}
     }
 }

@@ -33,7 +33,7 @@ pub(super) fn push_between(
     normal
 }
 
-/// Two balls. The normal of concentric ones is upward.
+/// Two balls. The normal of concentric balls is upward.
 pub(super) fn collide_points(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
     let PairInput { pose, prediction, .. } = input;
     let (p, q) = (a.vertices[0], pose.transform(b.vertices[0]));

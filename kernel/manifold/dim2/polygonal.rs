@@ -3,7 +3,7 @@
 use crate::math::{Pose, Vector};
 use crate::shape::{Shape, direction, oriented};
 
-/// A convex polygon with a radius: one vertex for a ball, two for a segment, else counter-clockwise.
+/// A convex polygon with a radius: one vertex for a ball, two for a segment, otherwise counter-clockwise.
 ///
 /// `normals[i]` is the outward unit normal of the edge from vertex `i` to the next. A segment has two
 /// edges, there and back. A single vertex has no normals.
@@ -76,7 +76,7 @@ impl Polygonal<'_> {
         best
     }
 
-    /// Of the two edges at a vertex the one whose normal is more opposite to `normal`.
+    /// The edge at a vertex whose normal is more opposite to `normal`.
     #[inline]
     pub(super) fn edge_facing(&self, normal: Vector, vertex: usize) -> usize {
         let before = self.previous(vertex);

@@ -1,7 +1,7 @@
 //! Two convex polygons, at least one with an area, by the edge normal that separates them most.
 //!
 //! Where the separation along a direction is positive, it grows towards the best direction and falls behind
-//! it. So the best edge of separated polygons is beside the nearest corner, and this edge and the one facing
+//! it. So the best edge of separated polygons is beside the nearest corner, and this edge and the edge facing
 //! it have the closest features.
 
 use super::super::{FeatureCache, LocalManifold, PairInput};
@@ -58,8 +58,8 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
     Facing::new(side, reference, facing, pose, limits).contact(best.separation > 0.0, out);
 }
 
-/// The reference: the better one of two edges. While the polygons overlap or touch, it is the reference of
-/// the last step, or else that of A, unless the other one is better by `preference`.
+/// The reference edge: the better of two edges. While the polygons overlap or touch, it is the reference of
+/// the last step, or otherwise A's edge, unless another edge is better by `preference`.
 #[inline]
 pub(super) fn choose(on_a: Best, on_b: Best, known: Option<(Side, Best)>, preference: f32) -> (Side, Best) {
     let best = if on_b.separation > on_a.separation { (Side::B, on_b) } else { (Side::A, on_a) };
@@ -78,17 +78,17 @@ pub(super) fn choose(on_a: Best, on_b: Best, known: Option<(Side, Best)>, prefer
 /// has no branches.
 const FEW: usize = 16;
 
-/// [`FeatureCache::kind`] while the reference edge is one of A.
+/// [`FeatureCache::kind`] while the reference edge is A's.
 const EDGE_OF_A: u8 = 1;
 
-/// [`FeatureCache::kind`] while the reference edge is one of B.
+/// [`FeatureCache::kind`] while the reference edge is B's.
 const EDGE_OF_B: u8 = 2;
 
 /// The edge of `own` with the largest separation of `other`, given the pose of `own` in `other`'s frame. The
-/// first one above `reach` ends the search.
+/// first edge above `reach` ends the search.
 ///
-/// Of a polygon with many vertices not all are tested for every edge: the lowest vertex moves around the
-/// polygon in the same direction as the normals (rotating calipers; M. Shamos, 1978).
+/// For a polygon with many vertices, not all vertices are tested for every edge: the lowest vertex moves
+/// around the polygon in the same direction as the normals (rotating calipers; M. Shamos, 1978).
 fn most_separating(own: &Polygonal, other: &Polygonal, pose: &Pose, reach: f32) -> Best {
     let mut best = (f32::NEG_INFINITY, 0, Vector::ZERO);
     let few = other.len() <= FEW;
@@ -112,8 +112,9 @@ fn most_separating(own: &Polygonal, other: &Polygonal, pose: &Pose, reach: f32) 
     Best { edge: best.1, support: other.lowest(best.2).0, separation: best.0 }
 }
 
-/// The vertex least far along `normal`. The walk starts at that of a normal up to half a turn behind. After
-/// nearly half a turn it may start on an edge that is level within rounding, so it tests two vertices ahead.
+/// The vertex least far along `normal`. The walk starts at the lowest vertex of a normal up to half a turn
+/// behind. After nearly half a turn it may start on an edge that is level within rounding, so it tests two
+/// vertices ahead.
 #[inline]
 fn descend(polygon: &Polygonal, normal: Vector, start: usize) -> usize {
     let (mut support, mut height) = (start, polygon.vertices[start].dot(normal));

@@ -9,12 +9,12 @@ use super::polygonal::{Edge, Polygonal};
 use crate::math::Vector;
 use crate::tuning::manifold::ALIKE;
 
-/// An end of one segment against the other segment.
+/// An end of a segment against the other segment.
 #[derive(Clone, Copy)]
 struct Candidate {
     /// The segment that the end is compared with.
     side: Side,
-    /// Which end of the other segment.
+    /// The index of the end in the other segment.
     end: usize,
     /// The nearest end of the segment, if the end is beyond it.
     corner: Option<usize>,
@@ -40,7 +40,7 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
     let best = if crossing { shallowest(&candidates) } else { nearest(&candidates) };
     let reach = prediction + a.radius + b.radius;
     if !crossing && best.square > reach * reach {
-        // Another feature may be nearer by the preference.
+        // Another feature may be nearer, by the preference at most.
         out.gap = best.square.sqrt() * (1.0 - ALIKE) - a.radius - b.radius;
         return;
     }
@@ -60,8 +60,8 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
         let (reference, incident) = (edge(own, false), edge(other, false));
         return Facing { side, normal: up, reference, incident, limits }.corners(corner, best.end, out);
     }
-    // The side of the segment where the other one is. The nearest end is there too, unless the segments cross
-    // or the end lies on the line; then the far end decides.
+    // The side of the segment where the other segment is. The nearest end is on this side too, unless the
+    // segments cross or the end lies on the line; then the far end decides.
     let far_end = (other[1 - best.end] - own[0]).dot(up);
     let on_line = best.height.abs() <= 1.0e-6 * far_end.abs();
     let faces_left = if crossing || on_line { far_end > 0.0 } else { best.height > 0.0 };
@@ -102,7 +102,7 @@ fn shallowest(candidates: &[Candidate; 4]) -> Candidate {
     best
 }
 
-/// The nearest end. Of equally near ones, an end over the segment comes before one beyond it.
+/// The nearest end. Of equally near ends, an end over the segment comes before an end beyond it.
 fn nearest(candidates: &[Candidate; 4]) -> Candidate {
     let mut best = candidates[0];
     for c in &candidates[1..] {

@@ -96,7 +96,7 @@ impl Core {
 }
 
 /// The signed distance of two shapes' surfaces by brute force: to the nearest vertex or edge of disjoint
-/// cores, minus the least penetration along an edge normal of overlapping ones.
+/// cores, minus the least penetration along an edge normal of overlapping cores.
 pub(super) fn oracle(a: &Shape, b: &Shape, pose: &Pose, shift: P) -> f64 {
     let (core_a, core_b) = (Core::new(a, &Pose::IDENTITY, [0.0; 2]), Core::new(b, pose, shift));
     match (core_a, core_b, a, b) {
@@ -184,7 +184,7 @@ fn any_shape(scale: f32) -> impl Strategy<Value = Shape> {
     ]
 }
 
-/// Two shapes and a pose at which their signed distance is about a given one, if there is such a pose.
+/// Two shapes and a pose at which their signed distance is about a given distance, if such a pose exists.
 fn near_pair() -> impl Strategy<Value = (Shape, Shape, Pose)> {
     let distance = prop_oneof![-0.6f32..0.04, -0.02f32..0.04];
     (any_shape(1.0), any_shape(1.0), rotation(), -4.0f32..4.0, distance).prop_map(|(a, b, turn, angle, d)| {
@@ -437,7 +437,7 @@ fn lying_capsules_touch_at_two_points() {
             assert_eq!(m.count, 2, "{m:?}");
             assert!((m.normal - Vector::Y).length() < 1e-6);
             assert!(m.points().iter().all(|p| (p.point.y - 0.25).abs() < 1e-6 && p.separation.abs() < 1e-6));
-            // From −0.3 to the end of the other one's flat side.
+            // From −0.3 to the end of the other capsule's flat side.
             let end = if matches!(other, Shape::Capsule(_)) { 0.5 } else { 0.7 };
             let mut x = m.points.map(|p| p.point.x);
             x.sort_by(f32::total_cmp);
@@ -501,7 +501,7 @@ fn foreign_shapes_half_spaces_and_nan_give_nothing() {
     }
 }
 
-/// Squares of sizes overflowed, and the contact had a normal that was no number.
+/// Squares of sizes overflowed, and the contact had a NaN normal.
 #[test]
 fn issue_sizes_that_overflow_gave_contacts_that_were_no_numbers() {
     let around = |size: f32| {

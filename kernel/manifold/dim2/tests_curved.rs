@@ -72,7 +72,7 @@ proptest! {
             let (got, best) = (m.points[0].separation, best_along(a, b, &pose));
             let along = along(a, b, &pose, m.normal);
             prop_assert!((got - along).abs() < 1e-4, "{got}, along the normal {along}, best {best}");
-            // Of the axes of deep overlaps one that is nearly the best is good enough.
+            // For deep overlap a nearly best axis is good enough.
             let allowed = 2e-3 + 0.05 * (-0.1 - best).max(0.0);
             prop_assert!(along > best - allowed, "{along} of {best}");
             if got > -0.05 {

@@ -1,4 +1,4 @@
-//! Shapes, oracles and tolerances of the tests of all pairs in the plane. `dim3` has those of space.
+//! Shapes, oracles and tolerances of the tests of all pairs in the plane. `dim3` has the same for space.
 
 use super::tests::oracle;
 use crate::manifold::tests_pairs::Dice;
@@ -88,7 +88,7 @@ pub(in super::super) fn in_frame(shape: &Shape, frame: &Pose) -> Option<Shape> {
     })
 }
 
-/// The signed distance by brute force, of all shapes but ellipses.
+/// The signed distance by brute force, of all shapes except ellipses.
 pub(in super::super) fn exact(a: &Shape, b: &Shape, pose: &Pose) -> Option<f64> {
     (!is_curved(a, b)).then(|| oracle(a, b, pose, [0.0; 2]))
 }
@@ -103,8 +103,8 @@ fn is_curved(a: &Shape, b: &Shape) -> bool {
     matches!((a, b), (Shape::Curved(_), _) | (_, Shape::Curved(_)))
 }
 
-/// How much deeper than the best axis the found one may be: by rounding for polygons. Of the axes of ellipses
-/// that overlap deeply one that is nearly the best is good enough.
+/// How much deeper than the best axis the found axis may be: rounding for polygons. For ellipses that overlap
+/// deeply, a nearly best axis is good enough.
 pub(in super::super) fn allowed(a: &Shape, b: &Shape, best: f64) -> f64 {
     if is_curved(a, b) { 2.0e-3 + 0.05 * (-0.1 - best).max(0.0) } else { 5.0e-5 }
 }
@@ -112,7 +112,7 @@ pub(in super::super) fn allowed(a: &Shape, b: &Shape, best: f64) -> f64 {
 /// How much less deep than the axis the points may be, as a share of the depth.
 pub(in super::super) const BESIDE: f64 = 0.0;
 
-/// How far points may be from where the axis has them.
+/// Tolerance of the points' positions along the axis.
 pub(in super::super) fn inexact(a: &Shape, b: &Shape) -> f64 {
     if is_curved(a, b) { 1.0e-4 } else { 5.0e-5 }
 }

@@ -1,5 +1,5 @@
-//! Which separating axis makes the contact of two polyhedra, and what becomes of it: the order of work of
-//! all such pairs.
+//! Selects the separating axis of two polyhedra and builds the manifold from it: the algorithm common to all
+//! polyhedral pairs.
 //!
 //! The axis of the last step is tested first (after Gregorius, "Robust Contact Creation for Physics
 //! Simulations", GDC 2015). Faces are preferred to edges unless edges are clearly better, so that the choice
@@ -77,7 +77,7 @@ pub(super) struct Sizes {
     pub prediction: f32,
     /// The sum of the radii around both cores.
     pub radius: f32,
-    /// The extents of both.
+    /// The smaller and the larger extent of both shapes.
     pub smaller: f32,
     pub larger: f32,
 }
@@ -100,7 +100,7 @@ impl Sizes {
 pub(super) trait Pair {
     fn sizes(&self) -> &Sizes;
 
-    /// The axis of a cache as it is now. Pairs that keep no cache have none.
+    /// The cached axis with its present separation; `None` for pairs that keep no cache.
     #[inline(always)]
     fn cached(&self, _: FeatureCache) -> Option<Axis> {
         None
@@ -110,7 +110,7 @@ pub(super) trait Pair {
     fn best_face(&self, of_b: bool) -> FaceAxis;
 
     /// The pair of edges with the largest separation, if it is larger than `known`. The best faces of A and B
-    /// tell where the shapes are near.
+    /// locate the near features.
     fn best_edges(&self, of_a: &FaceAxis, of_b: &FaceAxis, known: f32) -> Option<EdgeAxis>;
 
     /// Fills the manifold from an axis. Returns whether its nearest point is as near as the separation along
@@ -134,10 +134,10 @@ pub(super) trait Pair {
     fn build_apart(&self, axis: &Axis, out: &mut LocalManifold);
 
     /// Adds the deepest vertex under a face alone, where the shapes overlap beside the face. Only for the
-    /// best of all axes: under the face of an earlier step there may be nothing left.
+    /// best of all axes: an earlier step's face may have no vertex under it any more.
     fn push_deepest(&self, axis: &FaceAxis, out: &mut LocalManifold);
 
-    /// Fills the manifold from the cached axis if it still decides the contact, else from the best of all.
+    /// Fills the manifold from the cached axis if it still decides the contact, otherwise from the best axis.
     #[inline(always)]
     fn collide(&self, cache: &Cell<FeatureCache>, out: &mut LocalManifold) {
         let known = cache.get();
@@ -164,7 +164,7 @@ pub(super) trait Pair {
         is_exact || (out.count > 0 && separation <= sizes.resolution())
     }
 
-    /// The axis of least penetration or largest separation, or the first beyond the limit.
+    /// The axis of least penetration or maximum separation; stops at the first beyond the limit.
     #[inline(always)]
     fn search(&self) -> Axis {
         let (sizes, of_a) = (self.sizes(), self.best_face(false));
@@ -186,7 +186,7 @@ pub(super) trait Pair {
     fn decide(&self, axis: &Axis, out: &mut LocalManifold) {
         let (sizes, separation) = (self.sizes(), axis.separation());
         out.count = 0;
-        // Sizes that are NaN give no axis, or one with a NaN separation.
+        // NaN sizes give no axis, or an axis with a NaN separation.
         if !(separation <= sizes.limit()) || separation == f32::NEG_INFINITY {
             out.gap = max(separation - sizes.radius, 0.0);
             return;

@@ -9,20 +9,20 @@ use crate::math::{F32x4, Lane, Vector, min};
 use crate::shape::Face;
 use crate::tuning::manifold::MARGIN;
 
-/// Clipped polygons have less corners than this. A cut adds at most one per side.
+/// Clipped polygons have fewer corners than this. A cut adds at most one per side.
 pub(super) const MAX_CORNERS: usize = 65;
-/// The same for nearly all polygons; smaller buffers take less time to clear.
+/// Capacity for nearly all polygons; smaller buffers take less time to clear.
 pub(super) const FEW_CORNERS: usize = 17;
-/// The same where a triangle clips a face with up to four corners.
+/// Capacity where a triangle clips a face with up to four corners.
 pub(super) const LEAST_CORNERS: usize = 8;
 /// Incident faces with more vertices are thinned to every second, fourth, … vertex.
 const MAX_INCIDENT: usize = 32;
 /// Tags an edge that lies on a side of the reference face.
 const ON_SIDE: u32 = 0x200;
 
-/// What corners have beside their place, in between which it is interpolated.
+/// Data of a corner besides its position, interpolated between corners.
 pub(super) trait Carried: Copy + Default {
-    /// The value at a share of the way to another.
+    /// The value interpolated to another by a share.
     fn between(self, other: Self, share: f32) -> Self;
 }
 
@@ -49,9 +49,9 @@ pub(super) struct Corner<H = ()> {
     edge: u32,
 }
 
-/// A clipped polygon of less than `N` corners on the stack.
+/// A clipped polygon of fewer than `N` corners on the stack.
 pub(super) struct Polygon<const N: usize, H = ()> {
-    /// The last receives corners that are not wanted, and those beyond the capacity.
+    /// The last place receives unwanted corners and corners beyond the capacity.
     corners: [Corner<H>; N],
     count: usize,
 }
@@ -83,7 +83,7 @@ impl<const N: usize, H: Carried> Polygon<N, H> {
 }
 
 /// The face of `incident` most opposite to a direction in its own frame, among the faces around the vertex
-/// `deepest` along it; none if it has no faces. A face elsewhere may be more opposite: the base of a cone
+/// `deepest` along it; `None` if it has no faces. A face elsewhere may be more opposite: the base of a cone
 /// that stands on its tip.
 pub(super) fn incident_face(incident: &View, normal: Vector, deepest: usize) -> Option<usize> {
     if incident.faces.is_empty() {
@@ -99,7 +99,7 @@ pub(super) fn incident_face(incident: &View, normal: Vector, deepest: usize) -> 
     Some(face as usize)
 }
 
-/// A face of `incident`, or its edge or vertex if it has no faces. `place` gives where each vertex is.
+/// A face of `incident`, or its edge or vertex if it has no faces. `place` gives the position of each vertex.
 #[inline(always)]
 pub(super) fn incident_polygon<const N: usize, H: Carried>(
     incident: &View,
@@ -122,8 +122,8 @@ pub(super) fn incident_polygon<const N: usize, H: Carried>(
     }
 }
 
-/// Cuts a polygon by the side planes of a face; `extent` is that of the smaller shape. Alternates between two
-/// buffers and returns the one with the result.
+/// Cuts a polygon by the side planes of a face; `extent` is the smaller shape's. Alternates between two
+/// buffers and returns the buffer with the result.
 #[inline(always)]
 fn clip<'a, const N: usize>(
     view: &View,
@@ -157,8 +157,8 @@ fn clip<'a, const N: usize>(
     polygon
 }
 
-/// The range of a line, from one of `ends` to the other as 0…1, that lies over a face with a normal and an
-/// outline, and the sides that end it, if any. The sides are `margin` metres farther out.
+/// The range of a line between `ends`, as 0…1, that lies over a face with a normal and an outline, and the
+/// sides that end it, if any. The sides are `margin` metres farther out.
 pub(super) fn clip_line(
     normal: Vector,
     outline: impl DoubleEndedIterator<Item = Vector> + Clone,
@@ -185,21 +185,21 @@ pub(super) fn clip_line(
     (low.0 <= high.0).then_some([low, high])
 }
 
-/// A reference face, and what the points of its contact are made from.
+/// A reference face, and the inputs for the points of its contact.
 pub(super) struct Reference<'a> {
     pub normal: Vector,
     pub offset: f32,
-    /// The radii around the reference polyhedron and the incident one.
+    /// The radii around the reference polyhedron and the incident polyhedron.
     pub radii: [f32; 2],
     pub prediction: f32,
-    /// Transforms the face's frame to that of A, if it is another.
+    /// Transforms the face's frame to A's frame, if they differ.
     pub to_a: Option<&'a MatrixPose>,
     /// The bits of the face in its points' features.
     pub feature: u32,
 }
 
 impl Reference<'_> {
-    /// A face of `view`, which is B if `of_b`. `radius` is the one around the incident polyhedron.
+    /// A face of `view`, which is B if `of_b`. `radius` is the radius around the incident polyhedron.
     #[inline(always)]
     pub fn of_face(view: &View, face: usize, of_b: bool, radius: f32, prediction: f32) -> Self {
         let Face { normal, offset, .. } = view.faces[face];
@@ -251,9 +251,9 @@ impl Reference<'_> {
         least
     }
 
-    /// Fills a manifold, whose normal is set, with the part of an incident polygon over the face of an
-    /// axis. `extent` is that of the smaller shape. Returns whether the least height of the corners is
-    /// that of the axis.
+    /// Fills a manifold, whose normal is set, with the part of an incident polygon over the face of an axis.
+    /// `extent` is the smaller shape's. Returns whether the least height of the corners equals the separation
+    /// of the axis.
     #[inline(always)]
     pub fn fill_clipped<const N: usize>(
         &self,
@@ -287,7 +287,7 @@ pub(super) fn cut<const N: usize, H: Carried>(
     out.count = 0;
     let corners = polygon.corners();
     let Some(first) = corners.first() else { return };
-    // The outline of a segment is walked in one direction only.
+    // A segment's outline is walked in one direction only.
     let walk = if corners.len() == 2 { 1 } else { corners.len() };
     let side_name = (side + 1) & 0x3ff;
     let mut next = height(0, first);

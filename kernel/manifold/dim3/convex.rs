@@ -113,14 +113,14 @@ impl<'a> Pair<'a> {
         Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
     }
 
-    /// The polyhedron of a reference face, of B if `of_b`, the incident one, and the incident frame
-    /// in the other.
+    /// The polyhedron of the reference face (B if `of_b`), the incident polyhedron, and the pose of the
+    /// incident in the reference frame.
     #[inline(always)]
     fn ordered(&self, of_b: bool) -> (&View<'a>, &View<'a>, &MatrixPose) {
         if of_b { (self.b, self.a, &self.a_in_b) } else { (self.a, self.b, &self.b_in_a) }
     }
 
-    /// `face` is the incident one, if the incident polyhedron has faces.
+    /// `face` is the incident face, if the incident polyhedron has faces.
     #[inline(never)]
     fn clip_face<const N: usize>(
         &self,
@@ -145,10 +145,10 @@ impl<'a> Pair<'a> {
         Reference { to_a: axis.of_b.then_some(&self.b_in_a), ..reference }
     }
 
-    /// Adds the other ends of the lines along which the edges pass over each other's faces, where
-    /// these are near.
+    /// Adds the other ends of the lines along which the edges pass over each other's faces, where these ends
+    /// are near.
     fn push_far_ends(&self, axis: &EdgeAxis, [ends_a, ends_b]: [[Vector; 2]; 2], out: &mut LocalManifold) {
-        // The edges of a triangle may be inside a surface, which looks at each facet's points.
+        // The edges of a triangle may be inner edges of a surface, which tests each facet's points.
         if self.a.faces.len() == TRIANGLE_FACES || self.b.faces.len() == TRIANGLE_FACES {
             return;
         }
@@ -188,7 +188,7 @@ impl<'a> Pair<'a> {
 }
 
 /// The closest points of two lines that are not parallel, clamped to the segments given by their ends, and
-/// whether they were inside of these.
+/// whether they were inside of the segments.
 pub(super) fn closest_of_lines(a: [Vector; 2], b: [Vector; 2]) -> (Vector, Vector, bool) {
     let (u, v, w) = (a[1] - a[0], b[1] - b[0], b[0] - a[0]);
     let (uu, vv, uv) = (u.length_squared(), v.length_squared(), u.dot(v));
@@ -203,14 +203,14 @@ pub(super) fn closest_of_lines(a: [Vector; 2], b: [Vector; 2]) -> (Vector, Vecto
     (a[0] + u * clamp(s, 0.0, 1.0), b[0] + v * clamp(t, 0.0, 1.0), inside)
 }
 
-/// The end of the line along which an edge passes over the face of `reference` beside `edge`, of the two
-/// ends the one farther from that face: the point on the edge, and its distance from the face along
-/// `normal`. The ends of the edge are in the frame of `reference`; `normal` is the unit normal of the
-/// contact, out of `reference`.
+/// An edge passes over the face of `reference` beside `edge` along a line. Returns the end of this line that
+/// is farther from the face: the point on the edge, and its distance from the face along `normal`. The ends
+/// of the edge are in the frame of `reference`; `normal` is the unit normal of the contact, out of
+/// `reference`.
 ///
-/// Two edges touch in one point. A thin rod on the edge of another would rock on that, from one of its own
-/// edges to the next: the other end of the line across its face is hardly farther from the surface. So that
-/// end is a point, too.
+/// Two edges touch in one point. A thin rod on the edge of another rod would rock on this point, from one of
+/// its own edges to the next: the other end of the line across its face is hardly farther from the surface.
+/// So this end is a contact point too.
 fn far_end(reference: &View, edge: &Edge, ends: [Vector; 2], normal: Vector) -> Option<(Vector, f32)> {
     // A segment has no faces.
     let [left, right] = [edge.left, edge.right].map(|face| reference.faces.get(face as usize));
@@ -239,13 +239,13 @@ mod tests {
     use crate::shape::{Cuboid, Hull, Shape};
     use std::sync::Arc;
 
-    /// The distance of a point from the nearest face of a rod, of those along it; 0 on the surface.
+    /// The distance of a point from the nearest long face of a rod; 0 on the surface.
     fn above(half: Vector, p: Vector) -> f32 {
         (p.x.abs() - half.x).max(p.y.abs() - half.y)
     }
 
-    /// One rod along z on another along x, which it overlaps by a millimetre, inclined by 0.1 and rolled by
-    /// 0.02: it lies on an edge of that with its width of 6 cm, not only with one of its own edges.
+    /// A rod along z on a rod along x, with a millimetre of overlap, inclined by 0.1 and rolled by 0.02. It
+    /// lies on an edge of the other rod with its width of 6 cm, not only with one of its own edges.
     #[test]
     fn issue_a_rod_across_an_edge_stood_on_one_of_its_own_edges() {
         let half = Vector { x: 0.03, y: 0.03, z: 0.5 };

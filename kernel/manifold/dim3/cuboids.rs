@@ -1,7 +1,7 @@
 //! Two boxes, the most frequent pair, with a separating-axis test and clipping of its own.
 //!
-//! Fifteen axes (Gottschalk, Lin and Manocha, "OBBTree", 1996): three face normals each, nine products
-//! of edges. The rules of choice are those of [`axis`](super::axis).
+//! Fifteen axes (Gottschalk, Lin and Manocha, "OBBTree", 1996): three face normals each, nine products of
+//! edges. The axis is selected as in [`axis`](super::axis).
 
 use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Pair as _, Sizes};
 use super::convex;
@@ -20,7 +20,7 @@ struct Pair<'a> {
     half_a: Vector,
     half_b: Vector,
     frame: MatrixPose,
-    /// The centre of B in A's frame, and minus that of A in B's frame.
+    /// The centre of B in A's frame, and minus the centre of A in B's frame.
     offset: [Vector; 2],
     input: PairInput<'a>,
     sizes: Sizes,
@@ -37,7 +37,7 @@ pub(in crate::manifold) fn collide(a: &Cuboid, b: &Cuboid, input: PairInput, out
     Pair { half_a, half_b, frame, offset, input, sizes }.collide(input.cache, out);
 }
 
-/// The face with the largest separation, of those along each axis.
+/// The face with the largest of the separations along the three axes.
 #[inline(always)]
 fn largest_of(separations: Vector, of_b: bool) -> FaceAxis {
     let v = separations.to_array();
@@ -90,7 +90,7 @@ impl axis::Pair for Pair<'_> {
         largest_of(if of_b { self.faces_of_b() } else { self.faces_of_a() }, of_b)
     }
 
-    /// The normal is left open.
+    /// The normal is not computed.
     #[inline(always)]
     fn best_edges(&self, _: &FaceAxis, _: &FaceAxis, known: f32) -> Option<EdgeAxis> {
         // Row i of the rotation: the components of B's axes along axis i of A.
@@ -132,7 +132,7 @@ impl axis::Pair for Pair<'_> {
         found
     }
 
-    /// Clips the face of one box that is most opposite to the face on `axis` of the other, which is A
+    /// Clips the incident face of one box against the reference face on `axis` of the other box, which is A
     /// unless `of_b`.
     ///
     /// Coordinates are permuted so that the axis comes first. Axes and faces are looked up in tables, since
@@ -140,8 +140,8 @@ impl axis::Pair for Pair<'_> {
     fn build_face(&self, face: &FaceAxis, out: &mut LocalManifold) -> bool {
         let &FaceAxis { face: axis, of_b, separation, .. } = face;
         let [x, y, z] = self.frame.axes;
-        // The axes and centre of the other box in the frame of the box with the face, and those of the
-        // latter in A's.
+        // The axes and centre of the other box in the frame of the reference box, and the axes and centre of
+        // the reference box in A's frame.
         let (axes, position, this, other, columns, origin) = if of_b {
             let axes = [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
             (axes, -self.offset[1], self.half_b, self.half_a, self.frame.axes, self.frame.position)
@@ -159,7 +159,7 @@ impl axis::Pair for Pair<'_> {
         let (across, along) = (incident, [NEXT[incident], NEXT[NEXT[incident]]]);
         let other = other.to_array();
         let away = if axes[across][i0] * side > 0.0 { -1.0 } else { 1.0 };
-        // Across the reference face, and the height over it.
+        // Coordinates across the reference face, and the height over it.
         let local = |j: usize, k: f32| {
             let v = &axes[j];
             Vector { x: v[i1] * k, y: v[i2] * k, z: v[i0] * (k * side) }
@@ -293,8 +293,8 @@ impl Pair<'_> {
     }
 }
 
-/// The next edge of a box along axis `edge`, on the face that is most across `normal`: the axis along which
-/// it is away, how far, and how much farther along the normal.
+/// The next parallel edge of a box along axis `edge`, with the least rise along `normal`: the axis towards
+/// it, its distance, and its additional separation along the normal.
 fn next_edge(normal: &[f32; 3], half: &[f32; 3], edge: usize) -> (usize, f32, f32) {
     let (k, l) = (NEXT[edge], NEXT[NEXT[edge]]);
     let rise = |k: usize| 2.0 * half[k] * normal[k].abs();
@@ -311,7 +311,7 @@ struct Quad {
     q: Vector,
 }
 
-/// The places of a clipped quad: its four corners, four points where an edge enters the rectangle, four where
+/// The points of a clipped quad: its four corners, four points where an edge enters the rectangle, four where
 /// an edge leaves it, and four corners of the rectangle.
 struct Clipped {
     patch: Patch<4>,

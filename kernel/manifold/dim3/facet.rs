@@ -31,14 +31,14 @@ pub(in crate::manifold) fn borders(corners: [Vector; 3], normal: Vector) -> [Bor
     })
 }
 
-/// A convex shape that facets are collided with one after the other.
+/// A convex shape to collide with several facets in sequence.
 pub(in crate::manifold) struct Convex<'a> {
     pub shape: &'a Shape,
-    /// The polyhedral core, but for balls, whose contacts have closed forms.
+    /// The polyhedral core; none for balls, whose contacts have closed forms.
     core: Option<&'a View<'a>>,
 }
 
-/// Calls `f` with a shape that is to be collided with facets.
+/// Calls `f` with a shape to collide with facets.
 pub(in crate::manifold) fn with_convex<R>(shape: &Shape, f: impl FnOnce(&Convex) -> R) -> R {
     match shape {
         Shape::Ball(_) => f(&Convex::of(shape)),
@@ -47,12 +47,12 @@ pub(in crate::manifold) fn with_convex<R>(shape: &Shape, f: impl FnOnce(&Convex)
 }
 
 impl<'a> Convex<'a> {
-    /// A shape that is to be collided with few facets or none.
+    /// A shape to collide with few facets or none.
     pub fn of(shape: &'a Shape) -> Self {
         Self { shape, core: None }
     }
 
-    /// Fills `out` with the contact of a triangle as if there were no other; see [`collide_pair`].
+    /// Fills `out` with the contact of a single triangle; see [`collide_pair`].
     pub fn collide_facet(&self, corners: [Vector; 3], input: PairInput, out: &mut LocalManifold) {
         if let Some(core) = self.core
             && is_near(input.pose)
@@ -98,7 +98,7 @@ impl<'a> Convex<'a> {
     }
 }
 
-/// Puts the points that hold the same as all of `points` into a manifold.
+/// Reduces `points` to a few points with the same support, and stores them in a manifold.
 pub(in crate::manifold) fn few_points(points: &[LocalPoint], out: &mut LocalManifold) {
     let mut candidates = Candidates::<MAX_CANDIDATES>::new();
     points.iter().for_each(|p| candidates.push(*p));

@@ -8,7 +8,7 @@ use crate::manifold::LocalManifold;
 use crate::math::{Vector, max};
 use crate::shape::Curved;
 
-/// A convex core by its farthest points.
+/// A convex core, given by its support function.
 pub(super) trait Core {
     /// The point farthest along a direction of any length, and the number of its feature.
     fn farthest_point(&self, direction: Vector) -> (Vector, u32);
@@ -56,7 +56,7 @@ pub(super) struct Closest {
 
 impl Closest {
     /// Fills `out` with one point between the closest points, where a contact has no point or separates by
-    /// less than they do. `radii` are those around the cores.
+    /// less than they do. `radii` are the radii around the cores.
     pub fn fill_apart(&self, radii: [f32; 2], separation: f32, prediction: f32, out: &mut LocalManifold) {
         if !(self.distance > separation) && out.count > 0 {
             return;
@@ -97,9 +97,9 @@ pub(super) fn closest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> Opt
     closest_within(a, b, frame, frame.point(b.center()) - a.center(), f32::INFINITY)
 }
 
-/// The same up to a limit, beginning with the vertices along a direction from A to B: the nearer it is to
-/// that between the closest points, the fewer iterations are needed. Of cores that are farther apart the
-/// distance may be any between the limit and the true one, and the points are not the closest.
+/// As [`closest`], up to a limit. The search starts with the vertices along a direction from A to B: the
+/// nearer this is to the final normal, the fewer iterations are needed. For cores beyond the limit, the
+/// distance is between the limit and the true distance, and the points are not the closest.
 pub(super) fn closest_within<A: Core, B: Core>(
     a: &A,
     b: &B,
@@ -125,8 +125,8 @@ pub(super) fn closest_within<A: Core, B: Core>(
     })
 }
 
-/// The distance below which closest points of shapes of these extents have no direction. Separating axes
-/// are used there.
+/// The distance below which the closest points of shapes with these extents have no direction. Below it,
+/// separating axes are used.
 pub(super) fn resolution(larger: f32, smaller: f32) -> f32 {
     max(1.0e-3 * smaller, 1.0e-5 * larger)
 }

@@ -1,4 +1,4 @@
-//! A half-space against the vertices of anything.
+//! A half-space against the vertices of any shape.
 
 use super::reduce::{Candidates, MAX_CANDIDATES, keep};
 use crate::manifold::{LocalManifold, LocalPoint, PairInput};

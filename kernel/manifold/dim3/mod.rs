@@ -1,7 +1,8 @@
 //! Contact manifolds in space. `dim2` has the same functions for the plane.
 //!
 //! Balls and capsules have closed forms where they exist, two boxes have a function of their own, and all
-//! other pairs of polyhedra (with radii) share [`convex`]. What is round about an axis is in [`curved`].
+//! other pairs of polyhedra (with radii) share [`convex`]. Shapes that are round about an axis are in
+//! [`curved`].
 
 mod axis;
 mod clip;
@@ -46,7 +47,7 @@ pub(super) fn rank(shape: &Shape) -> u8 {
     }
 }
 
-/// The feature of a point of the swapped pair: it names no order.
+/// The feature of a point of the swapped pair: it does not depend on the order.
 pub(super) fn swapped_feature(feature: u32) -> u32 {
     feature
 }
@@ -77,7 +78,7 @@ pub(super) fn dispatch(a: &Shape, b: &Shape, input: PairInput, out: &mut LocalMa
         }
         // Composites are collided part by part, and foreign shapes by their `ManifoldSource`.
         (_, Composite(_) | Foreign(_)) => {}
-        // `collide` swaps these, or has taken them.
+        // `collide` swaps these pairs, or handles them itself.
         (
             Cuboid(_) | Hull(_) | Triangle(_) | Capsule(_) | Segment(_) | Curved(_) | Ball(_) | Composite(_)
             | Foreign(_),

@@ -30,7 +30,7 @@ fn gap() -> impl Strategy<Value = f32> {
     prop_oneof![Just(0.0f32), (0.03f32..0.3, 0..9u32).prop_map(tenths)]
 }
 
-/// A point between `a` and `b`, not near either.
+/// A point between `a` and `b`, not near either end.
 fn inner() -> impl Strategy<Value = f32> {
     0.1f32..0.9
 }

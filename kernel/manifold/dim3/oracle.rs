@@ -151,7 +151,7 @@ fn fan(outline: &[u32]) -> Vec<[usize; 3]> {
     (2..outline.len()).map(|k| [outline[0], outline[k - 1], outline[k]].map(|i| i as usize)).collect()
 }
 
-/// The height of a point over a triangle if its foot is inside, else infinity.
+/// The height of a point over a triangle if its foot is inside, otherwise infinity.
 fn over_triangle(p: Wide, [a, b, c]: [Wide; 3]) -> f64 {
     let n = (b - a).cross(c - a);
     let inside = [(a, b), (b, c), (c, a)].iter().all(|(s, t)| n.dot((*t - *s).cross(p - *s)) >= 0.0);

@@ -1,11 +1,11 @@
-//! Reduction of many candidate points to at most four: the deepest one, and those that span the largest
-//! area with it.
+//! Reduction of many candidate points to at most four: the deepest point, and the points that span the
+//! largest area with it.
 
 use crate::manifold::{LocalManifold, LocalPoint};
 use crate::math::{F32x4, Lane, Num, Vector, max};
 use crate::tuning::manifold::{ABOUT_EQUAL, FLAT, HIGH, IN_THE_AIR, MARGIN};
 
-/// The most candidates a manifold function collects before it reduces.
+/// The maximum number of candidates before reduction.
 pub(super) const MAX_CANDIDATES: usize = 64;
 /// A list of at most `N` candidates on the stack.
 pub(super) struct Candidates<const N: usize> {
@@ -22,7 +22,7 @@ impl<const N: usize> Candidates<N> {
         &self.list[..self.count]
     }
 
-    /// Adds a candidate. A full list replaces the one with the largest separation.
+    /// Adds a candidate. A full list replaces the candidate with the largest separation.
     pub fn push(&mut self, candidate: LocalPoint) {
         if self.count < N {
             self.list[self.count] = candidate;
@@ -43,9 +43,10 @@ impl<const N: usize> Candidates<N> {
 
 /// Fills a manifold, whose normal is set, with at most four candidates; see [`Patch::reduce`].
 ///
-/// Candidates of one face are in a plane, so that its ends hold it. Of several faces (`FACES`) the ends may
-/// be in the air while the body leans on an edge between them. One end of that would be dropped, sink in, and
-/// be pushed out, which adds energy. So candidates above the deepest one are worth less.
+/// Candidates of one face lie in a plane, so the outermost points support it. With several faces (`FACES`)
+/// the outermost points may be in the air while the body leans on an edge between them. If one end of this
+/// edge were dropped, it would sink in and be pushed out, which adds energy. So candidates above the deepest
+/// candidate are worth less.
 #[inline]
 pub(super) fn keep<const FACES: bool>(list: &[LocalPoint], out: &mut LocalManifold) {
     let (kept, count) = match list.len() {
@@ -124,8 +125,8 @@ impl<const B: usize> Patch<B> {
     }
 
     /// The indices of the candidates to keep, and their number, at most four. The first is the deepest,
-    /// within 0.1 % of the patch's size. Then come the one farthest from it, the one of the largest triangle,
-    /// and the one that adds most to the triangle's area.
+    /// within 0.1 % of the patch's size. Then come the farthest point from it, the point of the largest
+    /// triangle, and the point that adds most to the triangle's area.
     pub fn reduce<const FACES: bool>(&self) -> ([usize; 4], usize) {
         let mut present = self.present();
         let count = present.count_ones() as usize;
@@ -189,7 +190,7 @@ fn greatest(v: F32x4) -> f32 {
     max(max(v.get(0), v.get(1)), max(v.get(2), v.get(3)))
 }
 
-/// Twice the areas of the triangles of two points and four third ones, positive where they turn left.
+/// Twice the areas of the triangles of two points and four third points, positive where they turn left.
 #[inline(always)]
 fn twice_area(p: (f32, f32), q: (f32, f32), x: F32x4, y: F32x4) -> F32x4 {
     let (dx, dy) = (F32x4::splat(q.0 - p.0), F32x4::splat(q.1 - p.1));

@@ -40,7 +40,7 @@ impl Cores {
     }
 }
 
-/// The distance below which points computed from these have no direction.
+/// The distance below which the difference of points computed from `points` has no direction.
 fn rounding_of(points: &[Vector]) -> f32 {
     ROUNDING * points.iter().fold(0.0, |size, p| max(size, p.abs().max_element()))
 }
@@ -74,7 +74,7 @@ pub(super) fn capsule_ball(a: &Capsule, &Ball { radius }: &Ball, input: PairInpu
     cores.contact(fallback, rounding, input.prediction, out);
 }
 
-/// A box and a ball. The normal of a centre inside is that of the nearest face.
+/// A box and a ball. For a centre inside, the normal is the nearest face's.
 pub(super) fn cuboid_ball(a: &Cuboid, b: &Ball, input: PairInput, out: &mut LocalManifold) {
     let (half, radius) = (a.half, b.radius);
     let center = input.pose.position;
@@ -124,7 +124,7 @@ fn face(t: &Triangle) -> Option<Vector> {
     let (ab, ac) = (t.b - t.a, t.c - t.a);
     let cross = ab.cross(ac);
     let size = ab.length() * ac.length();
-    // The third side may be the short one. A NaN fails the comparison.
+    // The third side may be the shortest. A NaN fails the comparison.
     let is_face = cross.length() > ROUNDING * max(size, max(ab.length_squared(), ac.length_squared()));
     is_face.then(|| unit_or(cross, Vector::Y))
 }
@@ -179,8 +179,8 @@ fn nearest_on_sides(t: &Triangle, p: Vector) -> Vector {
     nearest
 }
 
-/// Two capsules (or segments). Parallel ones get a point at each end of the range in which they are
-/// side by side.
+/// Two capsules (or segments). Parallel capsules get a point at each end of the range in which they are side
+/// by side.
 pub(super) fn capsules(a: &Capsule, b: &Capsule, input: PairInput, out: &mut LocalManifold) {
     let PairInput { pose, prediction, .. } = input;
     let (b0, b1) = (pose.transform(b.a), pose.transform(b.b));
@@ -237,7 +237,7 @@ impl Lines {
         Self { a, u, b, v, uu: u.length_squared(), vv: v.length_squared() }
     }
 
-    /// The range of A in which B is beside it, as 0…1, if it is long enough. Both have a length.
+    /// The range of A, as 0…1, in which B is beside it, if it is long enough. Both lines have a length.
     pub fn shared(&self) -> Option<[f32; 2]> {
         let ends = self.b.map(|p| clamp((p - self.a).dot(self.u) / self.uu, 0.0, 1.0));
         let (low, high) = (min(ends[0], ends[1]), max(ends[0], ends[1]));
@@ -245,7 +245,7 @@ impl Lines {
         (shared > SAME * SAME * min(self.uu, self.vv)).then_some([low, high])
     }
 
-    /// The point of A at a share, and that of B beside it.
+    /// The point of A at a share, and the point of B beside it.
     pub fn at(&self, t: f32) -> [Vector; 2] {
         let on_a = self.a + self.u * t;
         [on_a, self.b[0] + self.v * clamp((on_a - self.b[0]).dot(self.v) / self.vv, 0.0, 1.0)]
@@ -253,9 +253,9 @@ impl Lines {
 }
 
 impl Cores {
-    /// The contact of two capsules, of which these are the closest points, with a point at each end of the
-    /// range in which both are side by side, if they are nearly parallel there. The normal is that in the
-    /// middle of the range.
+    /// The contact of two capsules that are nearly parallel, with a point at each end of the range in which
+    /// both are side by side; `self` has their closest points. The normal is taken in the middle of the
+    /// range.
     fn touch(
         &self,
         lines: &Lines,

@@ -4,9 +4,9 @@
 //! One point rules out most axes. The height of any point of B over a face of A is an upper bound of the
 //! face's separation. An outward axis n of an edge of A is a positive combination of the normals of the two
 //! faces beside it. If a point of B is deeper than S < 0 under both planes, it is also deeper than S along
-//! every such n, since |n| is at most the sum of its parts. The point is the vertex of B that is lowest over
-//! the best face, since shapes touch near there. Of the 40 faces of two hulls with 12 vertices some nine
-//! remain, of their 900 pairs of edges about a tenth.
+//! every axis n of this kind, since |n| is at most the sum of its parts. The point is the vertex of B that is
+//! lowest over the best face, since shapes touch near there. Two hulls with 12 vertices have 40 faces and 900
+//! pairs of edges: about nine faces and a tenth of the pairs remain.
 
 use super::axis::{EdgeAxis, FaceAxis};
 use super::view::{MatrixPose, View};
@@ -14,8 +14,7 @@ use crate::math::{F32x4, Lane, Num, Vector, min};
 use crate::shape::{EdgeBlock, largest};
 use crate::tuning::manifold::PARALLEL;
 
-/// The number of blocks of A's edges that are tested beforehand. Of hulls with more, all other blocks
-/// are searched.
+/// The number of blocks of A's edges that are tested beforehand. Blocks beyond this number are all searched.
 const LISTED: usize = 64;
 
 /// The signed distance of `other` from a face of `this`, where `frame` transforms `other` into its frame.
@@ -28,7 +27,7 @@ pub(super) fn face_separation(this: &View, face: usize, other: &View, frame: &Ma
 }
 
 /// The face of `this` with the largest separation, where `frame` transforms `other` into the frame of `this`.
-/// Stops at the first above `limit`. `this` counts as A.
+/// Stops at the first face above `limit`. `this` counts as A.
 pub(super) fn best_face(this: &View, other: &View, frame: &MatrixPose, limit: f32) -> FaceAxis {
     if this.faces.is_empty() {
         return FaceAxis { face: 0, of_b: false, separation: f32::NEG_INFINITY, lowest: 0 };
@@ -71,8 +70,8 @@ fn face_under(view: &View, point: Vector) -> usize {
     largest(best, at).0.min(view.faces.len() - 1)
 }
 
-/// The edges of four, as bits, that may have an axis along which `point` of the other polyhedron is not
-/// deeper than `depth` ≤ 0. See the module.
+/// Which of four edges, as bits, may have an axis along which `point` of the other polyhedron is not deeper
+/// than `depth` ≤ 0. See the module.
 #[inline(always)]
 pub(super) fn open_edges(block: &EdgeBlock, point: Vector, depth: f32) -> u32 {
     let (arm, depth) = (Vector::<F32x4>::splat(point) - block.tail, F32x4::splat(depth));
@@ -82,13 +81,13 @@ pub(super) fn open_edges(block: &EdgeBlock, point: Vector, depth: f32) -> u32 {
 
 /// Edges of B in A's frame against four edges of A at a time.
 ///
-/// The axis e_A × e_B is a face normal of the Minkowski difference A − B only if the arcs of the two
-/// edges on the Gauss map, that of B point-reflected, cross (Gregorius, "The Separating Axis Test
-/// between Convex Polyhedra", GDC 2013). An arc goes from the left normal l to the right one r by a
-/// turn about the edge's direction; it meets the great circle of the other edge e where l·e and r·e
-/// differ in sign, at sign(l·e) e_A × e_B for A's arc, and at the corresponding sign for B's. Both
-/// must be the same point, and that point is the outward axis. Using the directions of the edges
-/// instead of products of normals keeps this right for arcs up to 180°, as a flat triangle has.
+/// The axis e_A × e_B is a face normal of the Minkowski difference A − B only if the arcs of the two edges on
+/// the Gauss map, with B's arc point-reflected, cross (Gregorius, "The Separating Axis Test between Convex
+/// Polyhedra", GDC 2013). An arc goes from the left normal l to the right normal r by a turn about the edge's
+/// direction; it meets the great circle of the other edge e where l·e and r·e differ in sign, at sign(l·e)
+/// e_A × e_B for A's arc, and at the corresponding sign for B's. Both must be the same point, and that point
+/// is the outward axis. Using the directions of the edges instead of products of normals keeps this right for
+/// arcs up to 180°, as a flat triangle has.
 struct EdgeTest {
     direction: Vector<F32x4>,
     left: Vector<F32x4>,
@@ -138,8 +137,8 @@ pub(super) struct Known {
     pub separation: f32,
 }
 
-/// The pair of edges with the largest separation, if that is larger than the `known` one. `frame` transforms
-/// B into A's frame. Stops at the first above `limit`.
+/// The pair of edges with the largest separation, if it is larger than the `known` separation. `frame`
+/// transforms B into A's frame. Stops at the first pair above `limit`.
 pub(super) fn best_edges(
     a: &View,
     b: &View,
@@ -189,7 +188,8 @@ pub(super) fn best_edges(
     Some(EdgeAxis { a: i, b: j, normal: axis * (1.0 / axis.length()), separation: best })
 }
 
-/// The present separation of a pair of edges; `None` if it is no axis of the Minkowski difference any more.
+/// The present separation of a pair of edges; `None` if the pair is no longer an axis of the Minkowski
+/// difference.
 pub(super) fn edge_separation(
     a: &View,
     i: usize,

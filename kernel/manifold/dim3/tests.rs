@@ -88,13 +88,13 @@ pub(super) fn deepest(m: &LocalManifold) -> f32 {
     m.points().iter().map(|p| p.separation).fold(f32::INFINITY, f32::min)
 }
 
-/// Reported depths are those of the oracle to within this: a face is preferred to an edge that is up
-/// to 0.2 % of the extent better, and an axis counts as exact within 0.1 %.
+/// Tolerance of reported depths against the oracle: a face is preferred to an edge that is up to 0.2 % of the
+/// extent better, and an axis counts as exact within 0.1 %.
 const TOLERANCE: f64 = 0.006;
 
-/// How much farther shapes may reach into each other along a contact's normal than along the best one.
-/// Capsules and segments that touch along a line have the normal of its middle, which is up to a tenth
-/// (`CROSSED`) from that of their closest points.
+/// How much deeper shapes may overlap along a contact's normal than along the best normal. Capsules and
+/// segments that touch along a line have the normal in the middle of the line, which is up to a tenth
+/// (`CROSSED`) from the normal of their closest points.
 fn slack(a: &Shape, b: &Shape, m: &LocalManifold) -> f64 {
     let length = |shape: &Shape| match shape {
         Shape::Capsule(s) => Some((s.b - s.a).length()),
@@ -313,7 +313,7 @@ pub(super) fn scaled(shape: &Shape, k: f32) -> Shape {
     }
 }
 
-/// Whether the points of a manifold are the expected ones, in any order.
+/// Whether a manifold has the expected points, in any order.
 fn has_points(m: &LocalManifold, expected: &[Vector]) -> bool {
     m.count == expected.len()
         && expected.iter().all(|e| m.points().iter().any(|p| (p.point - *e).length() < 3e-3))
@@ -403,7 +403,8 @@ fn a_lying_capsule_touches_in_two_points() {
 
 #[test]
 fn a_distant_corner_is_approached_along_the_true_direction() {
-    // Two unit boxes corner to corner along the diagonal: each axis says 1, the distance is √3.
+    // Two unit boxes corner to corner along the diagonal: the separation along each axis is 1, the distance
+    // is √3.
     for a in both_kinds_of_box(v(0.5, 0.5, 0.5)) {
         for b in both_kinds_of_box(v(0.5, 0.5, 0.5)) {
             let pose = Pose::new(v(2.0, 2.0, 2.0), Rot::IDENTITY);
@@ -440,7 +441,7 @@ fn many_sided_faces_are_handled() {
 
 #[test]
 fn points_of_turned_prisms_lie_in_both() {
-    // The most corners that fit: the clipped face has those of both faces.
+    // The maximum number of corners: the clipped face has the corners of both faces.
     let prism = |sides: u32, phase: f64| {
         let corner = |i: u32, y: f32| {
             let (s, c) =

@@ -1,4 +1,4 @@
-//! Shapes, oracles and tolerances of the tests of all pairs in space. `dim2` has those of the plane.
+//! Shapes, oracles and tolerances of the tests of all pairs in space. `dim2` has the same for the plane.
 
 use super::oracle::Solid;
 use crate::manifold::tests_pairs::Dice;
@@ -132,8 +132,8 @@ fn is_line(shape: &Shape) -> bool {
     matches!(shape, Shape::Capsule(_) | Shape::Segment(_))
 }
 
-/// How much deeper than the best axis the found one may be. Faces are preferred by 0.2 % of the extent, and
-/// count as exact to 0.1 %. With frusta the search is sure to 0.5 %, and it ends at 1 % of the depth.
+/// How much deeper than the best axis the found axis may be. Faces are preferred by 0.2 % of the extent, and
+/// count as exact to 0.1 %. With frusta the search is accurate to 0.5 %, and it ends at 1 % of the depth.
 /// Capsules that are nearly parallel touch along a line while its ends sway by less than a tenth of the
 /// radii, so half of that to either side.
 pub(in super::super) fn allowed(a: &Shape, b: &Shape, best: f64) -> f64 {
@@ -148,10 +148,10 @@ pub(in super::super) fn allowed(a: &Shape, b: &Shape, best: f64) -> f64 {
 const POLYHEDRA: f64 = 0.006;
 
 /// How much less deep than the axis the points may be, as a share of the depth. A face may be preferred to
-/// edges that are hardly better, and its deepest corner is beside the face then.
+/// slightly better edges, and its deepest corner is then beside the face.
 pub(in super::super) const BESIDE: f64 = 0.04;
 
-/// How far points may be from where the axis has them.
+/// Tolerance of the points' positions along the axis.
 pub(in super::super) fn inexact(a: &Shape, b: &Shape) -> f64 {
     if is_curved(a, b) { 0.003 * smaller(a, b).min(4.0) + 1.0e-4 } else { POLYHEDRA }
 }

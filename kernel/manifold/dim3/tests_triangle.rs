@@ -1,4 +1,4 @@
-//! Triangles of surfaces against the search for any two polyhedra, and against brute force.
+//! Triangles of surfaces against the general search for two polyhedra, and against brute force.
 
 use super::facet::{borders, face_normal, with_convex};
 use super::oracle::Solid;
@@ -195,7 +195,8 @@ fn a_swapped_facet_has_the_same_contact() {
     }
 }
 
-/// A box that stands on a triangle is proven to, and a corner that pokes through a side is not.
+/// The proof that the face is the best axis holds for a box that stands on a triangle, and fails for a corner
+/// that pokes through a side.
 #[test]
 fn only_what_stands_inside_of_a_triangle_is_on_its_face_without_a_search() {
     let corner = |x, z| Vector { x, y: 0.0, z };

@@ -1,8 +1,9 @@
-//! Triangles of a surface against one polyhedron with a radius, which is viewed once for all of them.
+//! Triangles of a surface against one polyhedron with a radius. The polyhedron's view is built once for all
+//! triangles.
 //!
-//! It decides as all of [`axis`] do, and adds what a triangle has of its own: a single plane, arcs of 180° on
-//! the Gauss map, and often a proof that its face is the best axis, which saves the search for others.
-//! Everything is in the polyhedron's frame.
+//! The axis is selected as in [`axis`]. Triangles add three properties: a single plane, arcs of 180° on the
+//! Gauss map, and often a proof that the face is the best axis, which saves the search for others. Everything
+//! is in the polyhedron's frame.
 
 use super::axis::{self, Axis, EdgeAxis, FaceAxis, Pair as _, Sizes};
 use super::clip::{self, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CORNERS, Polygon, Reference};
@@ -15,7 +16,7 @@ use crate::math::{F32x4, Lane, Num, Vector, max, min};
 use crate::shape::largest;
 use crate::tuning::manifold::{MARGIN, PARALLEL, REACH};
 
-/// The cosine and sine of the angle from which on [`REACH`] says nothing: 2 atan(1 / REACH).
+/// The cosine and sine of the angle beyond which [`REACH`] gives no bound: 2 atan(1 / REACH).
 const STEEP: [f32; 2] = [(REACH * REACH - 1.0) / (REACH * REACH + 1.0), 2.0 * REACH / (REACH * REACH + 1.0)];
 
 /// A triangle and the polyhedron, in the frame of the polyhedron.
@@ -39,7 +40,7 @@ struct Pair<'a> {
     open: u32,
 }
 
-/// The planes through the sides across the face, outward, and that of the face.
+/// The outward planes through the sides across the face, and the face's plane.
 struct Prism {
     normals: Vector<F32x4>,
     offsets: F32x4,
@@ -77,7 +78,7 @@ impl Core for [Vector; 3] {
     }
 }
 
-/// The index of the largest number, the lowest of equals.
+/// The index of the largest number, the lowest index among equals.
 #[inline(always)]
 fn greatest(of: [f32; 3]) -> usize {
     let first = if of[1] > of[0] { 1 } else { 0 };
@@ -243,7 +244,7 @@ impl<'a> Pair<'a> {
         let sides = [b - a, c - b, a - c];
         let Facing { normal: face, scale } = Facing::of(sides)?;
         let frame = MatrixPose::new(input.pose);
-        // Taken relative to the polyhedron first, so that rounding is small where they are near.
+        // Corners are taken relative to the polyhedron first, so that rounding is small for near triangles.
         let [a, b, c] = corners.map(|corner| corner - frame.position);
         let placed = frame.direction_in(four([a, b, c, c]));
         let turned = frame.direction_in(four([sides[0], sides[1], sides[2], face]));
@@ -317,13 +318,13 @@ impl<'a> Pair<'a> {
         FaceAxis { face, of_b: true, separation, lowest }
     }
 
-    /// The sides that may make an axis which separates more than a plane does, as bits. Without any the plane
-    /// is the best of all axes: its lowest vertex v is over the triangle.
+    /// The sides, as bits, that may have an axis which separates more than the plane. Without any, the plane
+    /// is the best axis: the lowest vertex v is over the triangle.
     ///
     /// Let s be the separation along the plane's normal n, and ρ how far v is inside of a side, whose outward
     /// normal is u. An axis m = n cos θ + u sin θ of the side separates by at most s cos θ − ρ sin θ, since v
-    /// is no farther. That is at most s if s ≥ 0, and if s < 0 for tan(θ/2) ≤ ρ/|s|. The rest is the axes
-    /// around −n, along which the polyhedron's centre is deeper. If that holds for all sides, it does for any
+    /// is no farther. This is at most s if s ≥ 0, and if s < 0 for tan(θ/2) ≤ ρ/|s|. The remaining axes lie
+    /// around −n, where the polyhedron's centre is deeper. If this holds for all sides, it holds for any
     /// axis: the triangle reaches at least the least ρ around v's foot.
     #[inline(always)]
     fn open_sides(&self, plane: &FaceAxis) -> u32 {
@@ -395,7 +396,7 @@ impl<'a> Pair<'a> {
             .fold(start, |(high, low), corner| (high.max(corner.heights), low.min(corner.heights)));
         let outside = F32x4::bits(F32x4::ZERO.lt(highest));
         if F32x4::bits(F32x4::ZERO.lt(lowest)) & SIDES != 0 {
-            // All of it is beyond one side.
+            // The whole polygon is beyond one side.
             (out.count, out.normal) = (0, self.face * sign_of(plane));
             return false;
         }

@@ -83,7 +83,7 @@ const fn edge(tail: u32, head: u32, left: u32, right: u32) -> Edge {
     Edge { tail, head, left, right }
 }
 
-/// Bit k of a corner's index is its side of axis k; face 2k is the lower one of axis k.
+/// Bit k of a corner's index is its side of axis k; face 2k is the lower face of axis k.
 const CUBE_LOOPS: [u32; 24] = [0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6];
 const CUBE_EDGES: [Edge; 12] = [
     edge(0, 1, 2, 4),
@@ -118,12 +118,12 @@ const CUBE_CORNERS: [Vector<F32x4>; 2] = [
     wide([-1.0, 1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, 1.0], [-1.0, -1.0, -1.0, -1.0]),
     wide([-1.0, 1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, 1.0], [1.0, 1.0, 1.0, 1.0]),
 ];
-/// The normals of its faces.
+/// The face normals of this box.
 const CUBE_NORMALS: [Vector<F32x4>; 2] = [
     wide([-1.0, 1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 1.0], [0.0, 0.0, 0.0, 0.0]),
     wide([0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0], [-1.0, 1.0, 1.0, 1.0]),
 ];
-/// Its edges: four along each axis.
+/// The edges of this box: four along each axis.
 const CUBE_EDGE_BLOCKS: [EdgeBlock; 3] = [
     EdgeBlock {
         direction: wide([1.0, 1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]),
@@ -200,7 +200,7 @@ impl Small {
         }
     }
 
-    /// A box: a copy of that of half extents 1 with other corners and offsets.
+    /// A box: a copy of the box of half extents 1 with other corners and offsets.
     pub fn cuboid(half: Vector) -> Self {
         let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
         let h = half.to_array();
@@ -304,13 +304,13 @@ impl Small {
         Self::segment(capsule.a, capsule.b, capsule.radius)
     }
 
-    /// Packs the vertices of a polyhedron of up to four. The vertices after the last repeat it.
+    /// Packs the vertices of a polyhedron with up to four. Vertices after the last repeat it.
     #[inline(always)]
     fn fill_block(&mut self) {
         self.blocks[0] = four([self.vertices[0], self.vertices[1], self.vertices[2], self.vertices[3]]);
     }
 
-    /// Packs the edges of a polyhedron of three: their directions, and the normals on both sides.
+    /// Packs the edges of a polyhedron with three: their directions, and the normals on both sides.
     #[inline(always)]
     fn fill_edges(&mut self, directions: [Vector; 3], sides: [[Vector; 3]; 2]) {
         let tails = [0, 1, 2].map(|i: usize| self.vertices[self.edges[i].tail as usize]);
@@ -319,7 +319,7 @@ impl Small {
         self.edge_blocks[0] = EdgeBlock { direction: padded(directions), left, right, tail: padded(tails) };
     }
 
-    /// The view of it.
+    /// The view of this polyhedron.
     pub fn view(&self) -> View<'_> {
         View {
             vertices: &self.vertices[..self.vertex_count],
@@ -353,16 +353,17 @@ pub(super) fn with_view<R>(shape: &Shape, f: impl FnOnce(Option<&View>) -> R) ->
     f(Some(&small.view()))
 }
 
-/// Where a triangle faces.
+/// The normal and scale of a triangle.
 pub(super) struct Facing {
     /// The unit normal, counter-clockwise from outside.
     pub normal: Vector,
-    /// The inverse of the largest coordinate of its sides, in 1/m. Squares of sides by it do not overflow.
+    /// The inverse of the largest coordinate of its sides, in 1/m. Squares of sides scaled by it do not
+    /// overflow.
     pub scale: f32,
 }
 
 impl Facing {
-    /// That of a triangle with the given sides, one after the other; `None` without area.
+    /// For a triangle with the given consecutive sides; `None` without area.
     #[inline(always)]
     pub fn of(sides: [Vector; 3]) -> Option<Self> {
         let size = sides.iter().fold(0.0, |m, s| max(m, s.abs().max_element()));
@@ -388,7 +389,7 @@ impl MatrixPose {
         Self { axes: pose.rotation.axes(), position: pose.position }
     }
 
-    /// The outer frame as seen from the inner one.
+    /// The pose of the outer frame in the inner frame.
     #[inline]
     pub fn inverse(&self) -> Self {
         let [x, y, z] = self.axes;

@@ -351,7 +351,7 @@ impl fmt::Display for JointError {
             Self::Coupling => {
                 write!(f, "ratio, limits or give are not in order or not finite, or the ratio is 0")
             }
-            Self::Damping(damping) => write!(f, "a damping of {damping} is not finite and positive"),
+            Self::Damping(damping) => write!(f, "a damping of {damping} is not finite, or negative"),
         }
     }
 }

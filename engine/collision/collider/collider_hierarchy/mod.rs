@@ -21,15 +21,15 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use super::collider_transform::ColliderTransform;
 use crate::physics_transform::tree::FollowsBody;
 
-/// On a collider: its body, the nearest of the entity itself and its ancestors with a
-/// [`RigidBody`](crate::dynamics::rigid_body::RigidBody).
+/// On a collider: its body. This is the nearest entity with a
+/// [`RigidBody`](crate::dynamics::rigid_body::RigidBody), among the collider's own entity and its ancestors.
 ///
-/// The engine inserts, replaces and removes it at the end of the command that changed the hierarchy.
-/// Colliders without a body have none.
+/// The engine inserts, replaces and removes the component at the end of the command that changed the
+/// hierarchy. Colliders without a body do not have it.
 ///
 /// An app may insert it with any body; the engine then keeps it until the app removes it. The collider's pose
-/// on the body is its [`ColliderTransform`]. If that has its default value, the collider stays where its own
-/// `Transform` puts it in the world. If both are default, it is at the body's origin.
+/// on the body is its [`ColliderTransform`]. If that has its default value, the collider keeps the world pose
+/// of its own `Transform`. If both are default, the collider is at the body's origin.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -49,7 +49,7 @@ use crate::physics_transform::tree::FollowsBody;
 )]
 #[require(ColliderTransform)]
 pub struct ColliderOf {
-    /// The body; the collider's own entity if that is a body.
+    /// The body; the collider's own entity if that entity is a body.
     #[entities]
     pub body: Entity,
 }
@@ -84,10 +84,10 @@ impl Relationship for ColliderOf {
         self.body = body;
     }
 
-    /// Adds the collider to the body's list, as Bevy's own hook does. It reports no error if an observer has
-    /// despawned one of them, and does not add a body to its own list twice.
+    /// Adds the collider to the body's list, as Bevy's own hook does. Unlike Bevy's hook it reports no error
+    /// if an observer has despawned one of the entities, and does not add a body to its own list twice.
     fn on_insert(mut world: DeferredWorld, context: HookContext) {
-        // A clone of a body has no list, so the links of its cloned colliders make one.
+        // The clone of a body has no list. The links of its cloned colliders create one.
         if matches!(context.relationship_hook_mode, RelationshipHookMode::Skip) {
             return;
         }
@@ -115,8 +115,8 @@ fn list_collider(world: &mut World, collider: Entity) {
     }
 }
 
-/// On a body: its colliders, including its own entity if that has a collider. Despawning the body
-/// despawns them.
+/// On a body: its colliders, including the body's own entity if that has a collider. Despawning the body
+/// despawns all of them.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -147,8 +147,9 @@ impl RelationshipTarget for RigidBodyColliders {
     }
 }
 
-/// Clones no list: links make one. Colliders below a body are cloned with its children, if these are. With
-/// them go colliders that the app attached and that are elsewhere.
+/// Does not clone the list: the links of cloned colliders create it. Colliders below a body are cloned with
+/// its children, if children are cloned. In that case this function clones the colliders that the app
+/// attached and that are not below the body.
 fn clone_list(source: &SourceComponent, context: &mut ComponentCloneCtx) {
     let Some(list) = source.read::<RigidBodyColliders>() else { return };
     if context.moving() {

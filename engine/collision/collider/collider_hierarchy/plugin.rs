@@ -28,7 +28,7 @@ pub struct ColliderHierarchyPlugin;
 #[derive(Resource)]
 pub(crate) struct AttachesColliders;
 
-/// Present if colliders are placed on their bodies. Without it none is attached.
+/// Present if colliders are placed on their bodies. Without it no collider is attached.
 #[derive(Resource)]
 pub(crate) struct PlacesColliders;
 
@@ -81,7 +81,7 @@ fn attach_soon<E: EntityEvent, B: Bundle>(
     queue.push(event.event_target(), &mut commands);
 }
 
-/// Queues an entity, if it or a descendant has physics components.
+/// Queues an entity if it or a descendant has physics components.
 fn attach_reparented<E: EntityEvent>(
     event: On<E, ChildOf>,
     tree: Res<TransformTree>,
@@ -95,7 +95,7 @@ fn attach_reparented<E: EntityEvent>(
     }
 }
 
-/// Processes a link that the app inserted. Links by the hierarchy are complete.
+/// Processes a link that the app inserted. Links made by the hierarchy are complete.
 fn adopt_explicit(
     inserted: On<Insert, ColliderOf>,
     links: Query<(&ColliderOf, Option<&FollowsBody>), Allow<Disabled>>,
@@ -127,7 +127,7 @@ fn leave_body(
 }
 
 /// Unlinks the colliders at and below an entity that leaves its parent, down to the next body. If the next
-/// command despawns the old body, it must not despawn them.
+/// command despawns the old body, it must not despawn these colliders.
 fn detach_at_once(
     left: On<Discard, ChildOf>,
     tree: Res<TransformTree>,
@@ -176,7 +176,7 @@ struct Linker<'w, 's> {
     >,
 }
 
-/// Kept between calls, since building it takes longer than using it.
+/// Kept between calls, because building the state takes longer than using it.
 #[derive(Resource)]
 struct LinkerState(Option<SystemState<Linker<'static, 'static>>>);
 
@@ -187,7 +187,7 @@ impl FromWorld for LinkerState {
 }
 
 impl Linker<'_, '_> {
-    /// The changes for colliders at and below entities, in their order.
+    /// The changes of links at and below the entities, in order.
     fn find(&mut self, entities: &[Entity]) -> Vec<(Entity, Step)> {
         self.tree.follow(entities, &self.parents, &self.physical, &mut self.changes.early);
         let mut seen = EntityHashSet::default();
@@ -274,11 +274,11 @@ fn attach_to_themselves(world: &mut World, links: &mut Vec<(Entity, Option<Entit
         !taken
     });
     world.insert_batch(own);
-    // Commands of observers run before the other links are made.
+    // Commands of observers are applied before the other links are made.
     world.flush();
 }
 
-/// Makes or removes one link. Observers of the app run in between, so everything is looked up again.
+/// Makes or removes one link. Observers of the app run in between, so all data is looked up again.
 fn attach(world: &mut World, collider: Entity, body: Option<Entity>) {
     let body = body.filter(|&body| world.get::<RigidBody>(body).is_some());
     let Ok(mut entity) = world.get_entity_mut(collider) else { return };
@@ -307,8 +307,8 @@ fn mark_compound(world: &mut World, body: Entity) {
     }
 }
 
-/// Lets a collider follow the body given by the app. If the app gave no pose on the body, the collider stays
-/// where its `Transform` puts it.
+/// Makes a collider follow the body given by the app. If the app gave no pose on the body, the collider keeps
+/// the world pose of its `Transform`.
 fn adopt(world: &mut World, collider: Entity) {
     let Some(&ColliderOf { body }) = world.get::<ColliderOf>(collider) else { return };
     let offset = offset_from_body(world, collider, body);
@@ -323,7 +323,8 @@ fn adopt(world: &mut World, collider: Entity) {
     mark_compound(world, body);
 }
 
-/// The pose of a collider on its body; `None` if the app gave one, or gave neither.
+/// The pose of a collider on its body from both transforms. `None` if the app set the pose on the body, or
+/// did not place the collider at all.
 fn offset_from_body(world: &World, collider: Entity, body: Entity) -> Option<ColliderTransform> {
     let held = world.get::<ColliderTransform>(collider)?;
     let is_placed = world.get::<Transform>(collider).is_some_and(|own| {

@@ -32,15 +32,16 @@ pub(super) struct UpdateColliderTransforms;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Debug, Component, Default, PartialEq)]
 pub struct ColliderTransform {
-    /// From the body's origin to the collider's, in the body's axes, in metres. Includes the body's scale.
+    /// The vector from the body's origin to the collider's, in the body's axes, in metres. Includes the
+    /// body's scale.
     pub translation: Vector,
-    /// From the body's axes to the collider's.
+    /// The rotation from the body's axes to the collider's.
     pub rotation: Rotation,
     /// The scale of the collider in the world, along its own axes. Negative factors mirror it.
     ///
-    /// Below a turned and unevenly scaled ancestor an entity is sheared, which no collider is. Its scale is
-    /// then the diagonal of R, where Q R is its transform and Q its rotation: the x axis has its length, and
-    /// each other axis what is at right angles to those before it.
+    /// An entity below a rotated and unevenly scaled ancestor is sheared, but a collider cannot be sheared.
+    /// Its scale is then the diagonal of R, where Q R is its transform and Q its rotation: the x axis keeps
+    /// its length, and each other axis keeps its component perpendicular to the axes before it.
     pub scale: Vector,
 }
 

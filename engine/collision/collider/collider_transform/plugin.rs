@@ -92,7 +92,7 @@ impl Plugin for ColliderTransformPlugin {
 pub(crate) struct Placement {
     /// Colliders that were attached to another body since the last step.
     attached: Noted,
-    /// Those that wait for the command that computes their transform on the body.
+    /// Colliders that wait for the command that computes their transform on the body.
     unplaced: Vec<Entity>,
     /// Colliders whose transform relative to their body changed.
     offset: Vec<Entity>,
@@ -114,7 +114,7 @@ fn note_attached(
 ) {
     let collider = attached.event_target();
     placement.attached.note(collider);
-    // The first one queues the command for all.
+    // The first collider queues the command for all.
     if placement.unplaced.is_empty() {
         commands.queue(place_now);
     }
@@ -138,7 +138,7 @@ type Offsets<'w, 's> = Query<
 >;
 
 /// Sets the transform of a collider on its body. Returns whether it changed. If the app attached the
-/// collider, only the scale is that of the transforms.
+/// collider, only the scale is taken from the transforms.
 fn put_offset(colliders: &mut Offsets, entity: Entity, offset: ColliderTransform) -> bool {
     let Ok((mut held, of, follows)) = colliders.get_mut(entity) else { return false };
     let is_explicit = of.is_some_and(|of| of.is_explicit(entity, follows));
@@ -146,7 +146,7 @@ fn put_offset(colliders: &mut Offsets, entity: Entity, offset: ColliderTransform
     held.set_if_neq(offset)
 }
 
-/// Kept between calls, since building it takes longer than using it.
+/// Kept between calls, because building the state takes longer than using it.
 #[derive(Resource)]
 struct PlacerState(Option<SystemState<Placer<'static, 'static>>>);
 

@@ -1,4 +1,4 @@
-//! The events of constructors that are done.
+//! The events sent when constructors are done.
 
 use bevy_ecs::{entity::Entity, event::EntityEvent};
 
@@ -23,11 +23,11 @@ pub struct ColliderConstructorReady {
 }
 
 /// Triggered on an entity when its [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy) is
-/// done: all colliders below it are inserted, those from meshes that had to be loaded too.
+/// done: all colliders below it are inserted, including colliders from meshes that had to be loaded.
 ///
-/// The events of the single colliders come before. The hierarchy component is already removed. Constructors
-/// that failed, with a warning each, do not hold it up. One whose mesh was taken away, or is not being
-/// loaded, does, until it gets a mesh or is removed.
+/// The events of the single colliders come first. The hierarchy component is already removed. A constructor
+/// that failed, with a warning, does not delay the event. A constructor whose mesh was removed, or is not
+/// being loaded, delays it until the constructor gets a mesh or is removed.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq)]
 pub struct ColliderConstructorHierarchyReady {
     /// The entity that had the hierarchy component.

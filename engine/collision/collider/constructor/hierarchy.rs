@@ -11,25 +11,26 @@ use crate::{
     collision::collider::CollisionLayers, dynamics::rigid_body::mass_properties::components::ColliderDensity,
 };
 
-/// Makes colliders on all descendants of an entity, for example on the nodes of a level from a glTF file. Not
-/// on the entity itself.
+/// Makes colliders on all descendants of an entity, for example on the nodes of a level from a glTF file. The
+/// entity itself gets none.
 ///
-/// Each descendant gets the default [`ColliderConstructor`], or what is set for its `Name`. It gets none if
+/// Each descendant gets the constructor set for its `Name`, or the default [`ColliderConstructor`]. It gets
+/// none if
 ///
 /// - there is no constructor for it, by `None` as default or by
 ///   [`without_constructor_for_name`](Self::without_constructor_for_name),
 /// - the constructor needs a mesh and the descendant has none,
 /// - it has a collider or a constructor already, and its name is not in [`config`](Self::config).
 ///
-/// Layers and density of a descendant whose name is in the config are replaced by those of the config; others
-/// are set only where the descendant has none of its own.
+/// If the name of a descendant is in the config, its layers and density are replaced by the configured ones.
+/// Otherwise they are set only if the descendant has none of its own.
 ///
-/// The component is processed in `Update`. Where it, or a descendant, spawns a scene (`WorldAssetRoot` or
-/// `DynamicWorldRoot`), it waits until the scene is there. That needs feature `bevy_scene`; without the
-/// feature it waits until the entity has children, and warns once. When all colliders are inserted the
-/// component is removed, and [`ColliderConstructorHierarchyReady`](super::ColliderConstructorHierarchyReady)
-/// is triggered. Descendants that are spawned later get no colliders. If the component is removed before,
-/// there is no event, and constructors that descendants already have stay.
+/// The component is processed in `Update`. If its entity or a descendant spawns a scene (`WorldAssetRoot` or
+/// `DynamicWorldRoot`), it waits until the scene is spawned. This needs feature `bevy_scene`; without the
+/// feature it waits until the entity has children, and warns once. When all colliders are inserted, the
+/// component is removed and [`ColliderConstructorHierarchyReady`](super::ColliderConstructorHierarchyReady)
+/// is triggered. Descendants spawned later get no colliders. If the component is removed earlier, there is no
+/// event, and descendants keep constructors that they already have.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -50,11 +51,11 @@ use crate::{
 #[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 pub struct ColliderConstructorHierarchy {
-    /// The constructor of descendants whose name has none. `None` for no colliders but those in the config.
+    /// The default constructor. With `None` only descendants whose name is in the config get colliders.
     pub default_constructor: Option<ColliderConstructor>,
-    /// The layers of descendants whose name has none.
+    /// The layers of descendants whose name has no layers in the config.
     pub default_layers: CollisionLayers,
-    /// The density of descendants whose name has none. Default 1.
+    /// The density of descendants whose name has no density in the config. Default 1.
     pub default_density: ColliderDensity,
     /// Settings by `Name`. `None` for no collider.
     pub config: HashMap<String, Option<ColliderConstructorHierarchyConfig>>,
@@ -62,8 +63,8 @@ pub struct ColliderConstructorHierarchy {
 
 crate::type_path::type_path!(ColliderConstructorHierarchy, "collision::collider::constructor");
 
-/// Settings for descendants of one name. What is `None` is as the
-/// [hierarchy](ColliderConstructorHierarchy)'s default.
+/// Settings for descendants with one name. `None` takes the default of the
+/// [hierarchy](ColliderConstructorHierarchy).
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(type_path = false, Debug, Default, PartialEq)]
@@ -85,35 +86,35 @@ impl ColliderConstructorHierarchy {
         Self { default_constructor: default_constructor.into(), ..Self::default() }
     }
 
-    /// Sets the layers of descendants whose name has none. Default [`CollisionLayers::DEFAULT`].
+    /// Sets the default layers. [`CollisionLayers::DEFAULT`] by default.
     pub fn with_default_layers(self, layers: CollisionLayers) -> Self {
         Self { default_layers: layers, ..self }
     }
 
-    /// Sets the density of descendants whose name has none, in kg/m³ (in 2D kg/m²).
+    /// Sets the default density, in kg/m³ (in 2D kg/m²).
     pub fn with_default_density(self, density: impl Into<ColliderDensity>) -> Self {
         Self { default_density: density.into(), ..self }
     }
 
-    /// Sets the constructor for descendants of a name.
+    /// Sets the constructor for descendants with a name.
     pub fn with_constructor_for_name(mut self, name: &str, constructor: ColliderConstructor) -> Self {
         self.config_of(name).constructor = Some(constructor);
         self
     }
 
-    /// Sets the layers for descendants of a name.
+    /// Sets the layers for descendants with a name.
     pub fn with_layers_for_name(mut self, name: &str, layers: CollisionLayers) -> Self {
         self.config_of(name).layers = Some(layers);
         self
     }
 
-    /// Sets the density for descendants of a name, in kg/m³ (in 2D kg/m²).
+    /// Sets the density for descendants with a name, in kg/m³ (in 2D kg/m²).
     pub fn with_density_for_name(mut self, name: &str, density: impl Into<ColliderDensity>) -> Self {
         self.config_of(name).density = Some(density.into());
         self
     }
 
-    /// Makes no collider on descendants of a name.
+    /// Makes no collider on descendants with a name.
     pub fn without_constructor_for_name(mut self, name: &str) -> Self {
         self.config.insert(name.to_owned(), None);
         self
@@ -124,7 +125,7 @@ impl ColliderConstructorHierarchy {
     }
 }
 
-/// What one descendant gets.
+/// The settings for one descendant.
 pub(super) struct Choice<'a> {
     pub constructor: &'a ColliderConstructor,
     /// Whether the name is in the config.
@@ -134,7 +135,7 @@ pub(super) struct Choice<'a> {
 }
 
 impl ColliderConstructorHierarchy {
-    /// What a descendant with or without a name gets; `None` for no collider.
+    /// The settings for a descendant with or without a name; `None` for no collider.
     pub(super) fn choice(&self, name: Option<&str>) -> Option<Choice<'_>> {
         let unnamed = ColliderConstructorHierarchyConfig::default();
         let named = name.and_then(|name| self.config.get(name));

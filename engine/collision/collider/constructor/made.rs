@@ -1,17 +1,17 @@
-//! What becomes of a constructor.
+//! The outcome of a constructor.
 
 use crate::collision::collider::{Collider, ColliderError};
 
 /// The result of an attempt to make a collider.
 pub(super) enum Made {
-    /// It is made.
+    /// The collider was made.
     Collider(Collider),
-    /// It cannot be made: why, to be told, and the constructor is given up.
+    /// The collider cannot be made. The text is the reported reason, and the constructor is removed.
     Never(String),
     /// Its mesh is being loaded.
     #[cfg(feature = "collider-from-mesh")]
     Later,
-    /// It lacks something that the app has to add: what, to be told once.
+    /// The entity lacks something that the app has to add. The text is reported once.
     #[cfg(feature = "collider-from-mesh")]
     Lacks(&'static str),
 }

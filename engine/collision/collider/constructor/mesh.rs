@@ -36,7 +36,7 @@ impl Meshes<'_, '_> {
         constructor.requires_mesh() && !self.components.contains(entity)
     }
 
-    /// The collider of a constructor, once the entity's mesh is there if it needs one.
+    /// The collider of a constructor, once the mesh is loaded if it needs one.
     pub(super) fn make(&mut self, entity: Entity, constructor: &ColliderConstructor) -> Made {
         if !constructor.requires_mesh() {
             return Collider::from_constructor(constructor, None).into();
@@ -59,7 +59,7 @@ impl Meshes<'_, '_> {
         made.into()
     }
 
-    /// What a constructor whose mesh is not there waits for.
+    /// The outcome of a constructor whose mesh is not loaded.
     fn without_asset(&self, id: AssetId<Mesh>) -> Made {
         match self.server.as_ref().and_then(|server| server.get_load_state(id)) {
             Some(LoadState::Failed(_)) => Made::Never("its mesh failed to load".into()),

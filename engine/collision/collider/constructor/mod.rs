@@ -1,8 +1,8 @@
 //! Colliders described by data: [`ColliderConstructor`] for one entity, [`ColliderConstructorHierarchy`] for
-//! all descendants of one, and the events when they are done.
+//! all descendants of an entity, and the events sent when they are done.
 //!
-//! `dim2` and `dim3` have the constructors, `hierarchy` their settings for descendants. `systems` makes
-//! the colliders; `mesh` tells it of meshes and `scene` of scenes, each with a stand-in for builds
+//! `dim2` and `dim3` have the constructors, `hierarchy` their settings for descendants. `systems` makes the
+//! colliders, with access to meshes by `mesh` and to scenes by `scene`. Both have a stand-in for builds
 //! without the feature.
 
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
@@ -33,7 +33,7 @@ pub(crate) use set::ConstructorSystems;
 use crate::physics_transform::{Position, Rotation};
 
 impl ColliderConstructor {
-    /// A compound of constructors at poses relative to it.
+    /// A compound of constructors at relative poses.
     pub fn compound<P, R>(shapes: Vec<(P, R, ColliderConstructor)>) -> Self
     where
         P: Into<Position>,

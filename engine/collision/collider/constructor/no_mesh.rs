@@ -1,4 +1,4 @@
-//! Stands in for meshes without feature `collider-from-mesh`: no constructor needs one.
+//! Replaces `mesh` in builds without feature `collider-from-mesh`: no constructor needs a mesh.
 
 use bevy_ecs::{entity::Entity, system::SystemParam};
 use core::marker::PhantomData;

@@ -1,4 +1,4 @@
-//! Stands in for scenes without feature `bevy_scene`: what spawns a scene cannot be told from other entities.
+//! Replaces `scene` in builds without feature `bevy_scene`: entities that spawn a scene cannot be recognised.
 
 use bevy_ecs::{entity::Entity, system::SystemParam};
 use core::marker::PhantomData;

@@ -19,7 +19,7 @@ pub struct ColliderConstructorPlugin;
 
 impl Plugin for ColliderConstructorPlugin {
     fn build(&self, app: &mut App) {
-        // If physics runs in `Update`, the step of the same frame has the colliders.
+        // If physics runs in `Update`, the step of the same frame sees the colliders.
         let construct = construct.run_if(are_any).in_set(ConstructorSystems);
         app.add_systems(Update, construct.before(PhysicsSystems::First));
     }

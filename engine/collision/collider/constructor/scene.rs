@@ -7,7 +7,7 @@ use bevy_ecs::{
 };
 use bevy_world_serialization::{DynamicWorldRoot, WorldAssetRoot, WorldInstance, WorldInstanceSpawner};
 
-/// What spawns a scene below it.
+/// Entities that spawn a scene below them.
 type SpawnsScene = Or<(With<WorldAssetRoot>, With<DynamicWorldRoot>)>;
 
 /// The scenes of the app, which may have none.
@@ -25,8 +25,9 @@ impl Scenes<'_, '_> {
     /// Whether scenes are known, and waited for.
     pub(super) const ARE_KNOWN: bool = true;
 
-    /// Whether an entity waits for the scene it spawns. Without Bevy's plugin for scenes none does: none
-    /// would come. Nor would one that failed to load, which Bevy reports.
+    /// Whether an entity waits for the scene that it spawns. Without Bevy's scene plugin it does not wait,
+    /// because no scene would come. It does not wait for a scene that failed to load either; Bevy reports the
+    /// failure.
     pub(super) fn is_awaited(&self, entity: Entity) -> bool {
         let (Ok((instance, world, dynamic)), Some(spawner)) = (self.roots.get(entity), &self.spawner) else {
             return false;

@@ -22,16 +22,16 @@ use crate::collision::collider::Collider;
 #[derive(Component)]
 pub(super) struct Awaited(Vec<Entity>);
 
-/// What there is to do.
+/// Entities that the systems work on.
 type HasConstructor = Or<(With<ColliderConstructor>, With<ColliderConstructorHierarchy>, With<Awaited>)>;
 
-/// Whether there is anything to do.
+/// Whether the systems have any work.
 pub(super) fn are_any(work: Query<(), HasConstructor>) -> bool {
     !work.is_empty()
 }
 
-/// Makes colliders. In a command: in a chain of systems, most frames would pay for two points of
-/// synchronisation and have nothing to do.
+/// Makes colliders in a command. As a chain of systems, most frames would pay for two points of
+/// synchronisation without any work.
 pub(super) fn construct(mut commands: Commands) {
     commands.queue(|world: &mut World| {
         run(world, give_constructors);
@@ -46,7 +46,7 @@ fn run<M, S: IntoSystem<(), (), M> + 'static>(world: &mut World, system: S) {
     debug_assert!(done.is_ok(), "all parameters are optional or queries");
 }
 
-/// Gives descendants of new or changed hierarchies their constructors, once the scenes are there.
+/// Gives descendants of new or changed hierarchies their constructors, once scenes are spawned.
 fn give_constructors(
     hierarchies: Query<(Ref<ColliderConstructorHierarchy>, Option<&Awaited>, NameOrEntity)>,
     children: Query<&Children>,
@@ -100,7 +100,7 @@ fn give(commands: &mut Commands, entity: Entity, choice: &Choice) {
     entity.try_insert(choice.constructor.clone());
 }
 
-/// Inserts the colliders of constructors, or tells why it cannot.
+/// Inserts the colliders of constructors, or reports why a constructor made none.
 fn make_colliders(
     constructors: Query<(&ColliderConstructor, NameOrEntity)>,
     mut meshes: Meshes,
@@ -135,7 +135,7 @@ fn make_colliders(
 fn settle(collider: Option<Collider>) -> impl FnOnce(EntityWorldMut) + Send + 'static {
     move |mut entity| {
         if entity.take::<ColliderConstructor>().is_none() {
-            // Removed meanwhile.
+            // The constructor was removed meanwhile.
             return;
         }
         if let Some(collider) = collider {
@@ -146,7 +146,7 @@ fn settle(collider: Option<Collider>) -> impl FnOnce(EntityWorldMut) + Send + 's
     }
 }
 
-/// Removes hierarchies whose descendants have no constructors any more, and tells it.
+/// Removes hierarchies whose descendants have no constructors any more, and triggers their event.
 fn finish_hierarchies(
     hierarchies: Query<(Entity, &Awaited, Has<ColliderConstructorHierarchy>)>,
     constructors: Query<(), With<ColliderConstructor>>,

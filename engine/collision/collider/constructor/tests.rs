@@ -1,4 +1,4 @@
-//! What needs no app with assets: it holds with and without features for meshes and scenes.
+//! Tests that need no assets: they run with and without features for meshes and scenes.
 
 use super::{
     ColliderConstructor, ColliderConstructorHierarchy, ColliderConstructorHierarchyReady,
@@ -32,7 +32,7 @@ fn a_hierarchy_is_done_in_the_frame_in_which_it_has_descendants() {
     let root = app.world_mut().spawn(ColliderConstructorHierarchy::new(ball())).id();
     if Scenes::ARE_KNOWN {
         app.update();
-        // There is nothing that it could wait for.
+        // The hierarchy has nothing to wait for.
         assert_eq!(core::mem::take(&mut app.world_mut().resource_mut::<Log>().0), [(root, "all")]);
         app.world_mut().entity_mut(root).insert(ColliderConstructorHierarchy::new(ball()));
     } else {

@@ -1,4 +1,4 @@
-//! [`Collider`] as one of the types that a collider may have.
+//! The collider traits of [`Collider`].
 
 use super::{Collider, contact_query, dim};
 use crate::{

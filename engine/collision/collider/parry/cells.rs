@@ -1,4 +1,4 @@
-//! Cells of a grid as few boxes of cells: rows of cells, then sheets of rows, then blocks of sheets.
+//! Merges the cells of a grid into few boxes: rows of cells, then sheets of rows, then blocks of sheets.
 
 use crate::math::DIM;
 use crate::parry::math::IVector;
@@ -6,8 +6,7 @@ use crate::parry::math::IVector;
 /// The lowest and the highest cell of a box.
 pub(super) type CellBox = [IVector; 2];
 
-/// The cells as boxes, in ascending order of their ends across the last axis. Cells that there are
-/// twice count once.
+/// The cells as boxes, in ascending order of their ends across the last axis. Duplicate cells count once.
 pub(super) fn joined(cells: &[IVector]) -> Vec<CellBox> {
     match Grid::of(cells) {
         Some(grid) => grid.joined(),
@@ -15,14 +14,14 @@ pub(super) fn joined(cells: &[IVector]) -> Vec<CellBox> {
     }
 }
 
-/// Up to this number of places per cell a grid is filled; above, cells are sorted. More takes more memory for
-/// scattered cells.
+/// Maximum number of places per cell for which a grid is filled; above it, cells are sorted. A larger value
+/// takes more memory for scattered cells.
 const PLACES: usize = 16;
 
-/// The places around cells, as bits.
+/// The grid around the cells, one bit per place.
 struct Grid {
     low: [i128; DIM],
-    /// The number of places along each axis, 1 along an axis that there is not.
+    /// The number of places along each axis, 1 along an axis that does not exist.
     sizes: [usize; 3],
     filled: Vec<u64>,
 }
@@ -68,8 +67,8 @@ impl Grid {
     fn joined(&self) -> Vec<CellBox> {
         let [width, height, depth] = self.sizes;
         let mut blocks: Vec<Places> = Vec::new();
-        // The last block by the place of its lowest corner in a layer, and the last sheet of the layer by
-        // that in a row.
+        // The last block with each lowest corner in a layer, and the last sheet of the layer with each start
+        // in a row.
         let mut of_corner = vec![NONE; width * height];
         let (mut sheets, mut of_start): (Vec<Places>, _) = (Vec::new(), vec![NONE; width]);
         for z in 0..depth {
@@ -102,14 +101,14 @@ impl Grid {
 
     /// An end of a block.
     fn cell(&self, block: &Places, end: usize) -> IVector {
-        // Between the lowest and the highest cell, so that it is in range.
+        // The cell lies between the lowest and the highest cell, so it is in range.
         IVector::from_array(core::array::from_fn(|axis| {
             (self.low[axis] + i128::from(block[axis][end])).try_into().unwrap_or_default()
         }))
     }
 }
 
-/// Extends the last of some boxes by one that continues it along an axis, or adds that as a new one.
+/// Extends the box `last` by `next` if that continues it along an axis. Otherwise adds `next` as a new box.
 fn extend(boxes: &mut Vec<Places>, last: &mut u32, next: Places, axis: usize) {
     if let Some(last) = boxes.get_mut(*last as usize) {
         let is_alike = (0..3).all(|other| other == axis || last[other] == next[other]);
@@ -122,18 +121,18 @@ fn extend(boxes: &mut Vec<Places>, last: &mut u32, next: Places, axis: usize) {
     boxes.push(next);
 }
 
-/// The order of boxes with these ends.
+/// The sort key of boxes with these ends.
 fn order<T: Copy + Default + Ord, const N: usize>(ends: &[[T; N]; 2]) -> ([[T; N]; 2], T) {
     let mut across = *ends;
     across.iter_mut().for_each(|end| end[DIM - 1] = T::default());
     (across, ends[0][DIM - 1])
 }
 
-/// The same by sorting, for cells that are far apart.
+/// The same boxes by sorting, for cells that are far apart.
 fn joined_sparse(cells: &[IVector]) -> Vec<CellBox> {
     let mut boxes: Vec<CellBox> = cells.iter().map(|cell| [*cell, *cell]).collect();
     for axis in 0..DIM {
-        // Boxes that may be joined follow each other: those alike across the axis, in order along it.
+        // Boxes that may be joined are neighbours: equal across the axis, in order along it.
         let across = |b: &CellBox| {
             let mut ends = b.map(|end| end.to_array());
             ends.iter_mut().for_each(|end| end[axis] = 0);

@@ -11,9 +11,9 @@ use crate::physics_transform::{Position, Rotation};
 pub(super) const MAX_VOXEL: i32 = 1 << 24;
 
 impl Collider {
-    /// A collider made from several at poses relative to it.
+    /// A collider made of several colliders at poses relative to it.
     ///
-    /// Compounds in it are flattened, and meshes, polylines, height fields and voxels are decomposed into
+    /// Nested compounds are flattened. Meshes, polylines, height fields and voxels are decomposed into
     /// triangles, segments and boxes.
     pub fn compound(shapes: Vec<(impl Into<Position>, impl Into<Rotation>, impl Into<Collider>)>) -> Self {
         checked!("compound", |input| {
@@ -30,8 +30,8 @@ impl Collider {
         })
     }
 
-    /// A capsule along the Y axis: a segment of the given length with a radius. `length + 2 * radius`
-    /// high in total.
+    /// A capsule along the Y axis: a segment of the given length with a radius. Its total height is
+    /// `length + 2 * radius`.
     pub fn capsule(radius: Scalar, length: Scalar) -> Self {
         checked!("capsule", |input| {
             let half = input.length_or_zero(length) * 0.5;
@@ -60,7 +60,7 @@ impl Collider {
         })
     }
 
-    /// The segments between pairs of vertices; without `indices`, from each vertex to the next.
+    /// The segments between pairs of vertices. Without `indices`, each vertex is connected to the next.
     pub fn polyline(vertices: Vec<Vector>, indices: Option<Vec<[u32; 2]>>) -> Self {
         checked!("polyline", |input| {
             let indices = indices.unwrap_or_else(|| (1..vertices.len() as u32).map(|i| [i - 1, i]).collect());
@@ -73,8 +73,8 @@ impl Collider {
         })
     }
 
-    /// A triangle mesh. Triangles that are invalid are left out. See [`try_trimesh`](Self::try_trimesh) for
-    /// errors instead.
+    /// A triangle mesh. Invalid triangles are left out; [`try_trimesh`](Self::try_trimesh) returns an error
+    /// instead.
     ///
     /// A mesh has no volume, so thin or fast bodies tunnel through it more easily than through solid shapes.
     /// For dynamic bodies prefer several convex shapes.
@@ -82,8 +82,8 @@ impl Collider {
         Self::trimesh_with_config(vertices, indices, TrimeshFlags::empty())
     }
 
-    /// A triangle mesh, or an error: no triangles, or one whose indices do not exist, repeat or refer to
-    /// coordinates that are not finite (`BadTriangle`).
+    /// A triangle mesh, or an error if there are no triangles, or if a triangle has indices that do not
+    /// exist, repeat or refer to coordinates that are not finite (`BadTriangle`).
     pub fn try_trimesh(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> Result<Self, TrimeshBuilderError> {
         Self::try_trimesh_with_config(vertices, indices, TrimeshFlags::empty())
     }
@@ -149,7 +149,7 @@ impl Collider {
         }
     }
 
-    /// Boxes of size `voxel_size` on a grid: the one at `(0, 0)` has its lower corner at the origin.
+    /// Boxes of size `voxel_size` on a grid. The box at `(0, 0)` has its lower corner at the origin.
     pub fn voxels(voxel_size: Vector, grid_coordinates: &[IVector]) -> Self {
         checked!("voxels", |input| {
             let size = Vector::from_array(voxel_size.to_array().map(|v| input.length(v)));
@@ -161,7 +161,7 @@ impl Collider {
         })
     }
 
-    /// The boxes of size `voxel_size` on a grid that contain one of the points.
+    /// The boxes of size `voxel_size` on a grid that contain at least one of the points.
     pub fn voxels_from_points(voxel_size: Vector, points: &[Vector]) -> Self {
         checked!("voxels_from_points", |input| {
             let size = Vector::from_array(voxel_size.to_array().map(|v| input.length(v)));
@@ -173,8 +173,8 @@ impl Collider {
         })
     }
 
-    /// The boxes that an outline (2D: segments) or surface (3D: triangles) passes through, and those inside
-    /// of it by `fill_mode`. Boxes of which there would be too many are larger.
+    /// The grid boxes that an outline (2D: segments) or surface (3D: triangles) passes through, and the boxes
+    /// inside it as set by `fill_mode`. The boxes are larger if there would be too many.
     pub(super) fn voxelized(
         vertices: &[Vector],
         indices: &[[u32; DIM]],
@@ -225,7 +225,7 @@ fn spans_space(points: &[Vector]) -> bool {
     let Some(&origin) = points.first() else {
         return false;
     };
-    // Gram–Schmidt with pivots: each axis is the offset of the farthest point from the span of those before.
+    // Gram–Schmidt with pivots: each axis is the offset of the farthest point from the span of previous axes.
     let mut offsets: Vec<_> = points.iter().map(|p| *p - origin).collect();
     let size = offsets.iter().map(|v| v.length()).fold(0.0, Scalar::max);
     for _ in 0..DIM {
@@ -262,7 +262,7 @@ fn voxels_or_speck(size: Vector, cells: &[IVector], input: &mut Input) -> Collid
     if cells.is_empty() { speck(input) } else { SharedShape::voxels(size, cells) }.into()
 }
 
-/// Replaces unused vertices that are invalid: parry reads some of them.
+/// Replaces invalid unused vertices: parry reads some of them.
 pub(super) fn usable_vertices(mut vertices: Vec<Vector>) -> Vec<Vector> {
     for v in &mut vertices {
         if !is_usable(*v) {
@@ -272,7 +272,7 @@ pub(super) fn usable_vertices(mut vertices: Vec<Vector>) -> Vec<Vector> {
     vertices
 }
 
-/// Clamps parameters to ranges for which the decomposition ends.
+/// Clamps parameters to ranges for which the decomposition terminates.
 pub(super) fn usable_parameters(parameters: &VhacdParameters, input: &mut Input) -> VhacdParameters {
     let mut unit = |v: Scalar, fallback: Scalar| {
         if (0.0..=1.0).contains(&v) {

@@ -1,8 +1,7 @@
 //! Queries of two [`Collider`]s at given poses: contacts, nearest points, distance, overlap, time of impact.
 //!
-//! They see colliders only, not bodies, layers or margins.
-//! [`SpatialQuery`](crate::spatial_query::SpatialQuery) searches the world. The kernel answers for shapes
-//! that it has, parry for the others.
+//! These queries ignore bodies, layers and margins. [`SpatialQuery`](crate::spatial_query::SpatialQuery)
+//! searches the world. The kernel answers for shapes that it supports, parry for the others.
 //!
 //! ```
 //! # use avian::{collision::collider::contact_query, math::*, prelude::*};
@@ -30,7 +29,7 @@ use kernel::math::{self as k, WorldPose};
 use kernel::query::{CastConfig, Closest, cast_shape, closest, overlaps};
 use kernel::shape::Shape;
 
-/// A pair of shapes of which parry does not know how to answer a query. The kernel's shapes know all.
+/// A pair of shapes for which parry does not support a query. The kernel supports all queries of its shapes.
 pub type UnsupportedShape = Unsupported;
 
 /// How a [`time_of_impact`] was found.
@@ -46,14 +45,14 @@ pub enum ClosestPoints {
     Intersecting,
     /// The nearest points of the first and the second collider, in the world.
     WithinMargin(Vector, Vector),
-    /// The colliders are farther apart than was asked for.
+    /// The colliders are farther apart than the given distance.
     OutsideMargin,
 }
 
-/// Where and when two moving colliders meet.
+/// The place and time at which two moving colliders meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeOfImpact {
-    /// When they meet, in seconds.
+    /// The time at which they meet, in seconds.
     pub time_of_impact: Scalar,
     /// The point on the first collider, in its frame.
     pub point1: Vector,
@@ -63,7 +62,7 @@ pub struct TimeOfImpact {
     pub normal1: Vector,
     /// The outward unit normal of the second collider, in its frame.
     pub normal2: Vector,
-    /// How it was found.
+    /// How the time of impact was found.
     pub status: TimeOfImpactStatus,
 }
 
@@ -95,14 +94,14 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// Both shapes, if the kernel has them.
+    /// Both shapes, if the kernel supports them.
     fn native(&self) -> Option<[&'a Shape; 2]> {
         let shapes = self.colliders.map(Collider::native);
         let is_foreign = |shape: &&Shape| matches!(shape, Shape::Foreign(_));
         (!shapes.iter().any(is_foreign)).then_some(shapes)
     }
 
-    /// What parry is asked with.
+    /// The poses and shapes in parry's types.
     fn parry(&self) -> [(crate::parry::math::Pose, &'a dyn crate::parry::shape::Shape); 2] {
         [0, 1].map(|i| {
             let (position, rotation) = self.poses[i];
@@ -110,7 +109,7 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// A point of the first collider's frame, in the world.
+    /// Transforms a point of the first collider's frame to the world.
     fn to_world(&self, point: k::Vector) -> Vector {
         world_from_kernel(self.world[0].transform(point))
     }
@@ -122,12 +121,12 @@ impl<'a> Pair<'a> {
     }
 }
 
-/// A distance that parry takes: 0 for a negative one and NaN.
+/// A distance that parry accepts: 0 for a negative distance and NaN.
 fn usable_distance(distance: Scalar) -> Scalar {
     if distance > 0.0 { distance.min(LONGEST) } else { 0.0 }
 }
 
-/// The longest distance that parry is asked for, in metres: the square of a longer one overflows.
+/// The longest distance passed to parry, in metres: the square of a longer one overflows.
 const LONGEST: Scalar = 1.0e15;
 
 /// The deepest point of contact, or the nearest points if the colliders are no farther apart than
@@ -137,7 +136,7 @@ const LONGEST: Scalar = 1.0e15;
 ///
 /// # Errors
 ///
-/// If parry is asked, and does not support the shapes.
+/// If neither the kernel nor parry supports the shapes.
 pub fn contact(
     collider1: &Collider,
     position1: impl Into<Position>,
@@ -178,7 +177,8 @@ pub fn contact(
 /// Replaces `manifolds` by the contact manifolds of two colliders, with points up to `prediction_distance`
 /// metres apart.
 ///
-/// Anchors are from the positions given, in world axes. There are none if a number is not finite.
+/// Anchors are relative to the given positions, in world axes. There are no manifolds if a number is not
+/// finite.
 #[expect(clippy::too_many_arguments, reason = "as in Avian")]
 pub fn contact_manifolds(
     collider1: &Collider,
@@ -221,12 +221,12 @@ pub fn contact_manifolds(
     }
 }
 
-/// The nearest points of two colliders that are no farther apart than `max_distance` metres. Colliders at a
-/// number that is not finite are farther apart.
+/// The nearest points of two colliders that are no farther apart than `max_distance` metres. If a number is
+/// not finite, the colliders count as farther apart.
 ///
 /// # Errors
 ///
-/// If parry is asked, and does not support the shapes.
+/// If neither the kernel nor parry supports the shapes.
 pub fn closest_points(
     collider1: &Collider,
     position1: impl Into<Position>,
@@ -256,12 +256,12 @@ pub fn closest_points(
     })
 }
 
-/// The distance between two colliders in metres, 0 if they touch or overlap. Infinite at a number that
-/// is not finite.
+/// The distance between two colliders in metres: 0 if they touch or overlap, infinite if a number is not
+/// finite.
 ///
 /// # Errors
 ///
-/// If parry is asked, and does not support the shapes.
+/// If neither the kernel nor parry supports the shapes.
 pub fn distance(
     collider1: &Collider,
     position1: impl Into<Position>,
@@ -280,11 +280,11 @@ pub fn distance(
     query::distance(&pose1, shape1, &pose2, shape2)
 }
 
-/// Whether two colliders touch or overlap. False at a number that is not finite.
+/// Whether two colliders touch or overlap. False if a number is not finite.
 ///
 /// # Errors
 ///
-/// If parry is asked, and does not support the shapes.
+/// If neither the kernel nor parry supports the shapes.
 pub fn intersection_test(
     collider1: &Collider,
     position1: impl Into<Position>,
@@ -302,14 +302,14 @@ pub fn intersection_test(
     query::intersection_test(&pose1, shape1, &pose2, shape2)
 }
 
-/// When two colliders that move at constant velocities, in m/s, and do not turn first touch, up to
-/// `max_time_of_impact` seconds.
+/// The first time at which two colliders touch, up to `max_time_of_impact` seconds. They move at constant
+/// velocities, in m/s, and do not rotate.
 ///
-/// `None` if they do not touch until then, or if a number is not finite.
+/// `None` if they do not touch within that time, or if a number is not finite.
 ///
 /// # Errors
 ///
-/// If parry is asked, and does not support the shapes.
+/// If neither the kernel nor parry supports the shapes.
 #[expect(clippy::too_many_arguments, reason = "as in Avian")]
 pub fn time_of_impact(
     collider1: &Collider,
@@ -344,7 +344,7 @@ pub fn time_of_impact(
     }))
 }
 
-/// The second shape is cast along the relative motion, in the frame of the first.
+/// Casts the second shape along the relative motion, in the frame of the first.
 fn native_impact(
     pair: &Pair,
     [a, b]: [&Shape; 2],

@@ -34,7 +34,7 @@ pub(super) fn pose_from_kernel(pose: &kernel::math::Pose) -> Pose {
     Pose::from_parts(vector_from_kernel(pose.position), rotation)
 }
 
-/// A relative pose as the kernel has it.
+/// A relative pose in the kernel's type.
 pub(super) fn pose_to_kernel(pose: &Pose) -> kernel::math::Pose {
     kernel::math::Pose {
         position: vector_to_kernel(pose.translation),
@@ -114,7 +114,7 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
     }
 }
 
-/// A height field; without a line if segments are left out.
+/// A height field. If segments are removed, it becomes a surface of the remaining ones instead of one line.
 fn height_field(field: &HeightField) -> Option<NativeShape> {
     let segments: Vec<[Vector; 2]> = field.segments().map(|s| [s.a, s.b]).collect();
     if segments.len() < field.num_cells() {

@@ -28,7 +28,7 @@ pub(super) fn pose_from_kernel(pose: &kernel::math::Pose) -> Pose {
     Pose::from_parts(vector_from_kernel(pose.position), rotation)
 }
 
-/// A relative pose as the kernel has it.
+/// A relative pose in the kernel's type.
 pub(super) fn pose_to_kernel(pose: &Pose) -> kernel::math::Pose {
     kernel::math::Pose {
         position: vector_to_kernel(pose.translation),
@@ -95,7 +95,7 @@ pub(super) fn native_of_dimension(shape: TypedShape<'_>) -> Option<NativeShape> 
     }
 }
 
-/// A height field; without a grid if triangles are left out.
+/// A height field. If triangles are removed, it becomes a surface of the remaining ones instead of a grid.
 fn height_field(field: &HeightField) -> Option<NativeShape> {
     if field.cells_statuses().data().iter().any(|cell| cell.intersects(HeightFieldCellStatus::CELL_REMOVED)) {
         return surface_of_facets(field.triangles().map(|t| [t.a, t.b, t.c]));
@@ -115,8 +115,8 @@ fn native_curved(shape: Result<Curved, ShapeError>) -> Option<NativeShape> {
     shape.ok().map(NativeShape::Curved)
 }
 
-/// The polyhedron of the kernel, if it takes it. Parry's hulls of scattered points have slightly concave
-/// edges where faces are nearly in one plane; the kernel then finds the hull of their corners.
+/// The kernel's polyhedron, if the kernel accepts it. Parry's hulls of scattered points have slightly concave
+/// edges where faces are nearly coplanar; the kernel then computes the hull of their corners.
 fn hull_of(polyhedron: &ConvexPolyhedron) -> Option<Hull> {
     let vertices: Vec<_> = polyhedron.points().iter().map(|v| vector_to_kernel(*v)).collect();
     let faces: Vec<Vec<u32>> = polyhedron

@@ -1,24 +1,24 @@
-//! Why values make no collider.
+//! Errors of collider constructors.
 
-/// Why a constructor of [`Collider`](super::Collider) whose name starts with `try_` made none.
+/// Why a constructor of [`Collider`](super::Collider) whose name starts with `try_` made no collider.
 ///
 /// Sizes and coordinates may be up to 10,000 km. Sizes are at least 10 µm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColliderError {
-    /// A size that has to be positive is not.
+    /// A size that must be positive is not.
     #[error("a size is zero, negative, too large or not a number")]
     InvalidSize,
     /// A size that may be zero is negative or not finite.
     #[error("a size is negative, too large or not a number")]
     NegativeSize,
-    /// A point is not finite, or outside of the limits.
+    /// A point is not finite, or outside the limits.
     #[error("a point is too far away or not a number")]
     InvalidPoint,
     /// A normal is zero or not finite.
     #[error("a normal has no direction")]
     NoDirection,
-    /// A segment has its ends at one place.
+    /// Both ends of a segment are at the same place.
     #[error("the ends of a segment are at the same place")]
     NoLength,
     /// The corners of a triangle are on a line.
@@ -36,7 +36,7 @@ pub enum ColliderError {
     /// The segment or triangle with this index has corners that do not exist, are equal, or cannot be used.
     #[error("element {0} has corners that do not exist, are the same or cannot be used")]
     InvalidElement(u32),
-    /// There are no segments or triangles with different corners that exist.
+    /// No segment or triangle has distinct corners that exist.
     #[error("there are no segments or triangles whose corners exist and differ")]
     NoElements,
     /// There are no voxels within ± 2²⁴ cells.
@@ -63,7 +63,7 @@ pub enum ColliderError {
     /// A compound has no parts.
     #[error("a compound has no parts")]
     NoParts,
-    /// A part of a compound has a position that is not finite, or a rotation that is none.
+    /// A part of a compound has a position that is not finite, or an invalid rotation.
     #[error("the pose of a part is too far away or has no rotation")]
     InvalidPose,
     /// A scale is not finite, or almost zero along an axis.
@@ -75,7 +75,7 @@ pub enum ColliderError {
     /// Nothing is left after preprocessing.
     #[error("nothing of what the shape is made from can be used")]
     Empty,
-    /// A constructor from a mesh was given none.
+    /// A constructor from a mesh was given no mesh.
     #[error("there is no mesh")]
     NoMesh,
     /// A mesh has no triangles that can be used.

@@ -11,14 +11,14 @@ use super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// The preprocessing of meshes. Their corners are doubled where normals or texture coordinates differ, and
+/// The preprocessing of meshes. Meshes duplicate vertices where normals or texture coordinates differ, and
 /// grids of spheres have flat triangles at their poles.
 pub(super) const OF_MESH: TrimeshFlags =
     TrimeshFlags::MERGE_DUPLICATE_VERTICES.union(TrimeshFlags::DELETE_DEGENERATE_TRIANGLES);
 
 impl Collider {
-    /// The triangles of a mesh. Vertices at the same place are joined, and triangles without an
-    /// area left out.
+    /// The triangles of a mesh. Vertices at the same place are merged, and triangles without an area are left
+    /// out.
     ///
     /// `None` if the mesh has no triangles that can be used, or if its data was moved to the render world
     /// (`RenderAssetUsages`). In 2D the Z coordinate is ignored. That holds for all constructors from meshes.
@@ -59,9 +59,10 @@ impl Collider {
         convex_decomposition(mesh, parameters).ok()
     }
 
-    /// The boxes that a mesh passes through, in 2D its outline, and those inside of it by `fill_mode`.
+    /// The grid boxes that a mesh (in 2D its outline) passes through, and the boxes inside it as set by
+    /// `fill_mode`.
     ///
-    /// `None` also if the size is not positive, or so small that there would be more than 8 million
+    /// `None` also if the size is not positive, or so small that the mesh would have more than 8 million
     /// boxes around it.
     pub fn voxelized_trimesh_from_mesh(mesh: &Mesh, voxel_size: Scalar, fill_mode: FillMode) -> Option<Self> {
         voxelized_trimesh(mesh, voxel_size, fill_mode).ok()
@@ -115,7 +116,7 @@ fn triangles(mesh: &Mesh) -> Made<(Vec<Vector>, Vec<[u32; 3]>)> {
     };
     let mut triangles: Vec<[u32; 3]> = match mesh.primitive_topology() {
         PrimitiveTopology::TriangleList => order.as_chunks().0.to_vec(),
-        // Every second triangle of a strip is turned round.
+        // Every second triangle of a strip is reversed.
         PrimitiveTopology::TriangleStrip => {
             let turned =
                 |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
@@ -127,6 +128,6 @@ fn triangles(mesh: &Mesh) -> Made<(Vec<Vector>, Vec<[u32; 3]>)> {
     if triangles.is_empty() {
         return Err(ColliderError::NoMeshTriangles);
     }
-    // Parry reads corners that no triangle has.
+    // Parry reads corners that no triangle uses.
     Ok((usable_vertices(corners), triangles))
 }

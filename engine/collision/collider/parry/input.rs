@@ -70,7 +70,7 @@ impl Input {
         (heights.map(|h| coordinate(h) * sign).collect(), factor.abs())
     }
 
-    /// Two points at least the smallest length apart.
+    /// Two points at least the minimum length apart.
     pub fn segment(&mut self, a: Vector, b: Vector) -> (Vector, Vector) {
         let (a, b) = (self.point(a), self.point(b));
         // Far from the origin the minimum length may be below the resolution of coordinates.
@@ -82,14 +82,14 @@ impl Input {
         }
     }
 
-    /// The unit vector of a direction; upwards if it has none.
+    /// The unit vector of a direction; the Y axis if it has none.
     pub fn direction(&mut self, direction: Vector) -> Vector {
-        // Divided by the largest component first, so that squares neither overflow nor underflow.
+        // Dividing by the largest component first keeps squares from overflow and underflow.
         let scaled = direction / direction.abs().max_element();
         scaled.try_normalize().filter(|d| d.is_finite()).unwrap_or_else(|| self.repair(Vector::Y))
     }
 
-    /// The elements with different valid indices of usable points.
+    /// The elements whose indices are valid and distinct, and refer to usable points.
     pub fn elements<const N: usize>(
         &mut self,
         vertices: &[Vector],
@@ -102,10 +102,10 @@ impl Input {
     }
 }
 
-/// Maximum number of voxels around a shape that is voxelised. Each takes 12 bytes while it is done.
+/// Maximum number of voxels around a voxelised shape. Each voxel takes 12 bytes during voxelisation.
 const MAX_VOXELS: f64 = 8_388_608.0;
 
-/// Whether the box of some usable points has not too many voxels of a positive size.
+/// Whether the voxel size is positive and the box of the usable points does not have too many voxels.
 pub(super) fn voxels_fit(points: &[Vector], voxel_size: Scalar) -> bool {
     let usable = || points.iter().copied().filter(|p| is_usable(*p));
     let (low, high) = (usable().reduce(Vector::min), usable().reduce(Vector::max));
@@ -142,10 +142,10 @@ macro_rules! checked {
 }
 pub(super) use checked;
 
-/// Runs a routine of parry that may panic. `None` if it does.
+/// Runs a routine of parry that may panic. `None` if it panics.
 ///
-/// The checks before it find all invalid input that can be known. What remains are assertions within parry's
-/// algorithms. With `panic = "abort"` this aborts, too.
+/// Earlier checks reject all invalid input that can be detected. Assertions within parry's algorithms remain.
+/// With `panic = "abort"` a panic still aborts.
 pub(super) fn without_panic<T>(routine: impl FnOnce() -> T) -> Option<T> {
     // The closure's values are dropped or returned as a whole, so no panic leaves one half changed.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(routine)).ok()

@@ -1,4 +1,4 @@
-//! Contacts of shapes that the kernel does not have: parry's manifolds, converted to the kernel's convention.
+//! Contacts of shapes that the kernel does not support: parry's manifolds in the kernel's convention.
 
 use super::{Collider, dim};
 use crate::collision::local_points::reduce;
@@ -11,7 +11,7 @@ use crate::parry::shape::SharedShape;
 use kernel::manifold::{LocalManifold, LocalPoint};
 use kernel::math::Pose;
 
-/// Appends the contact manifolds of two colliders, one of which the kernel has no shape for.
+/// Appends the contact manifolds of two colliders. The kernel does not support the shape of at least one.
 ///
 /// `pose` is the pose of `b` in the frame of `a`. See [`parry_manifolds`].
 pub(crate) fn foreign_manifolds(
@@ -40,12 +40,13 @@ pub(crate) fn foreign_ball_manifolds(
 /// Appends the contact manifolds of two shapes: one for convex shapes, one per touching part for composite
 /// ones, none for pairs that parry does not support.
 ///
-/// `pose` is the pose of shape 2 in the frame of shape 1. Manifolds are in that frame, with normals from 1 to
-/// 2, and points midway between the surfaces, separated by at most `prediction` metres. A manifold has at
-/// most `MAX_POINTS`: the deepest, and those that spread widest. Feature ids of different part pairs differ.
+/// `pose` is the pose of shape 2 in the frame of shape 1. Manifolds are in that frame. Normals point from 1
+/// to 2. Points are midway between the surfaces, separated by at most `prediction` metres. A manifold has at
+/// most `MAX_POINTS` points: the deepest, and the points that spread widest. Feature ids of different part
+/// pairs differ.
 ///
 /// Parry could start from its last result for the pair. It does not, so that the result depends only on the
-/// shapes and the pose, as everything in a step does.
+/// shapes and the pose, like all results of a step.
 pub(crate) fn parry_manifolds(
     shape1: &SharedShape,
     shape2: &SharedShape,
@@ -71,7 +72,7 @@ pub(crate) fn parry_manifolds(
     if found.is_err() {
         return;
     }
-    // In the order of parts, independent of the order in which parry's tree is walked.
+    // Sorted by part, independent of the order in which parry walks its tree.
     manifolds.sort_by_key(|m| (m.subshape1, m.subshape2));
     for manifold in &manifolds {
         let Some(normal) = normal_in_frame_1(manifold) else {
@@ -94,7 +95,7 @@ pub(crate) fn parry_manifolds(
     }
 }
 
-/// The unit normal in the frame of shape 1; `None` if there is none.
+/// The unit normal in the frame of shape 1; `None` if the manifold has none.
 fn normal_in_frame_1(manifold: &ContactManifold<(), ()>) -> Option<kernel::math::Vector> {
     let normal = match manifold.subshape_pos1() {
         Some(part) => part.rotation * manifold.local_n1,

@@ -1,8 +1,8 @@
 //! [`Collider`], the default collider: a shape of parry with a scale.
 //!
-//! `constructors`, `shapes2` and `shapes3` make colliders, `from_constructor` and `from_mesh` those that are
-//! described by data and by meshes, `native` converts their shapes for the kernel, and `manifold` computes
-//! contacts of shapes that the kernel does not have.
+//! `constructors`, `shapes2` and `shapes3` make colliders. `from_constructor` and `from_mesh` make colliders
+//! described by data and by meshes. `native` converts shapes for the kernel. `manifold` computes contacts of
+//! shapes that the kernel does not support.
 
 mod any_collider;
 mod cells;
@@ -42,7 +42,7 @@ pub use params::{FillMode, TrimeshFlags, VhacdParameters};
 #[allow(unused_imports, reason = "3D has no shapes of its own")]
 pub use shapes::*;
 
-/// Meshes, without feature `collider-from-mesh`: there are none.
+/// Replaces Bevy's meshes in builds without feature `collider-from-mesh`: there are none.
 #[cfg(not(feature = "collider-from-mesh"))]
 mod mesh_type {
     pub(crate) enum Mesh {}
@@ -72,8 +72,9 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 
 /// The shape of a body for collisions and spatial queries.
 ///
-/// On an entity with a `RigidBody` it is that body's collider. On a descendant it belongs to the nearest body
-/// above. Without a body it only answers queries and detects contacts. Cheap to clone: the shape is shared.
+/// On an entity with a `RigidBody` it is the collider of that body. On a descendant it belongs to the nearest
+/// body above. Without a body it only answers queries and detects contacts. Cheap to clone: the shape is
+/// shared.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -86,21 +87,21 @@ pub type TrimeshBuilderError = crate::parry::shape::TriMeshBuilderError;
 /// }
 /// ```
 ///
-/// Constructors without a `Result` or `Option` never fail: invalid values (NaN, negative or zero sizes,
-/// indices out of range) are repaired, with one warning per constructor. Sizes become positive and at least
-/// 10 µm. If nothing is left, the collider is a ball of that size. Each has a twin whose name starts with
+/// Constructors without a `Result` or `Option` never fail: they repair invalid values (NaN, negative or zero
+/// sizes, indices out of range), with one warning per constructor. Sizes become positive and at least 10 µm.
+/// If nothing is left, the collider is a ball of that size. Each of them has a twin whose name starts with
 /// `try_`, which returns a [`ColliderError`] instead.
 ///
 /// With feature `serialize` a collider is stored as the definition of its shape and its scale, and is read
 /// back with the same bits. A definition that makes no shape is an error. Custom shape types cannot be
-/// stored. With this feature colliders are part of Bevy's worlds in files (`DynamicWorldBuilder`), as all
-/// other components are: the example `save_and_load`.
+/// stored. With this feature Bevy's world files (`DynamicWorldBuilder`) contain colliders, like all other
+/// components: see the example `save_and_load`.
 ///
 /// Parry's shapes are available in their own types: `Collider::from(SharedShape)` accepts any of them, and
-/// [`shape_scaled`](Self::shape_scaled) returns the one the engine uses.
+/// [`shape_scaled`](Self::shape_scaled) returns the shape that the engine uses.
 #[derive(Clone, Component, Debug, Reflect)]
 #[reflect(opaque, Clone, Debug, Default)]
-// Without serde a world with colliders could not be written to a file: Bevy then leaves them out.
+// Without serde, Bevy leaves colliders out of world files.
 #[cfg_attr(feature = "serialize", reflect(Component, Serialize, Deserialize))]
 #[require(
     ColliderMarker,
@@ -135,7 +136,7 @@ impl Scaled {
         Self { native: native_shape(&shape), shape }
     }
 
-    /// The shape with a scale. `None` if no shape is that.
+    /// The shape with a scale. `None` if no shape has this scale.
     fn by(shape: &SharedShape, scale: Vector, subdivisions: u32) -> Option<Self> {
         scaled::scaled(shape, scale, subdivisions).map(Self::new)
     }
@@ -175,7 +176,7 @@ impl Collider {
         &mut self.shape
     }
 
-    /// The shape with the scale applied, which collides.
+    /// The shape with the scale applied. This shape collides.
     pub fn shape_scaled(&self) -> &SharedShape {
         &self.scaled().shape
     }
@@ -206,12 +207,12 @@ impl Collider {
 
     /// Sets the scale along each axis. A negative scale mirrors the shape.
     ///
-    /// On an entity with a `Transform` the scale of its `GlobalTransform` replaces this one before the next
-    /// step, unless [`PhysicsTransformConfig::transform_to_collider_scale`] is off.
+    /// On an entity with a `Transform`, the scale of its `GlobalTransform` replaces this scale before the
+    /// next step, unless [`PhysicsTransformConfig::transform_to_collider_scale`] is off.
     ///
-    /// A curved shape that is scaled unevenly becomes a convex hull, with about `num_subdivisions` points per
-    /// quarter turn. Rounded edges stay round, with a radius that follows the smallest scale. A turned part
-    /// of a compound that is scaled unevenly keeps its angles: no shape is sheared.
+    /// A curved shape with an uneven scale becomes a convex hull, with about `num_subdivisions` points per
+    /// quarter turn. Rounded edges stay round, with a radius that follows the smallest scale. A rotated part
+    /// of a compound with an uneven scale keeps its angles: shapes cannot be sheared.
     ///
     /// A scale that is not finite is ignored with a warning. An axis with a scale of almost zero
     /// keeps 1/100,000 of its length. If a shape cannot be scaled, a warning is given and the
@@ -260,7 +261,7 @@ impl Collider {
     }
 }
 
-/// The shape, if it has a finite extent (parry's own constructors accept any number). Otherwise a tiny ball,
+/// The shape, if its extent is finite (parry's own constructors accept any number). Otherwise a tiny ball,
 /// with one warning.
 fn usable(shape: SharedShape) -> SharedShape {
     if has_extent(&shape) {

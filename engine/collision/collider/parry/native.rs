@@ -1,4 +1,4 @@
-//! Conversion of parry's shapes to the kernel's: a native shape where the kernel has one, otherwise a box
+//! Converts parry's shapes for the kernel: to a native shape if the kernel supports it, otherwise to a box
 //! whose contacts parry computes.
 
 use super::super::custom::{round_down, round_up};
@@ -73,6 +73,6 @@ fn foreign(shape: &SharedShape) -> Foreign {
         kernel::math::Vector::from_array(corner.to_array().map(rounded))
     };
     let aabb = Aabb { min: outward(aabb.mins, round_down), max: outward(aabb.maxs, round_up) };
-    // A custom shape may have an invalid box. It then touches nothing.
+    // A custom shape may have an invalid box. The shape then touches nothing.
     Foreign { aabb: if aabb.is_valid() { aabb } else { Aabb::around([kernel::math::Vector::ZERO]) } }
 }

@@ -1,4 +1,4 @@
-//! The kernel's composite shapes, of parry's meshes, lines, height fields, voxels and compounds.
+//! Converts parry's meshes, lines, height fields, voxels and compounds to the kernel's composite shapes.
 
 use super::cells::joined;
 use crate::math::{Scalar, Vector, vector_to_kernel};
@@ -22,12 +22,12 @@ pub(super) fn surface_of_facets(facets: impl Iterator<Item = [Vector; DIM]>) -> 
     surface(corners.into_iter(), facets)
 }
 
-/// Parts without turns, all in one frame.
+/// A compound of parts in one frame, without rotation.
 pub(super) fn unmoved(parts: impl Iterator<Item = Shape>) -> Option<Shape> {
     Shape::compound(parts.map(|part| (Pose::IDENTITY, part)).collect()).ok()
 }
 
-/// Voxels as few boxes: a floor of voxels is one.
+/// Voxels merged into few boxes: a floor of voxels becomes one box.
 pub(super) fn voxels(voxels: &Voxels) -> Option<Shape> {
     let full = voxels.voxels().filter(|voxel| !voxel.state.is_empty());
     let size = voxels.voxel_size();

@@ -1,5 +1,5 @@
-//! Settings of mesh colliders, convex decomposition and voxelisation. Parry's own types have a dimension and
-//! a precision in their path, and no reflection.
+//! Settings of mesh colliders, convex decomposition and voxelisation. Parry's own types have no reflection,
+//! and their paths depend on dimension and precision.
 
 use crate::math::Scalar;
 use bevy_reflect::Reflect;
@@ -16,7 +16,7 @@ use super::dim;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Debug, Default, PartialEq)]
 pub struct VhacdParameters {
-    /// How much a part may depart from its convex hull, 0 to 1. Default 0.1 in 2D, 0.01 in 3D.
+    /// How much a part may deviate from its convex hull, 0 to 1. Default 0.1 in 2D, 0.01 in 3D.
     pub concavity: Scalar,
     /// The preference for cuts along planes of symmetry, 0 to 1. Default 0.05.
     pub alpha: Scalar,
@@ -80,7 +80,7 @@ pub enum FillMode {
     SurfaceOnly,
     /// Voxels that cannot be reached from outside are filled as well.
     FloodFill {
-        /// Whether closed surfaces inside of others are holes.
+        /// Whether closed surfaces inside other surfaces are holes.
         detect_cavities: bool,
         /// Whether outlines that cross themselves are supported.
         #[cfg(feature = "2d")]
@@ -108,7 +108,7 @@ bitflags! {
         const CONNECTED_COMPONENTS = 2;
         /// Drops triangles that make the topology invalid.
         const DELETE_BAD_TOPOLOGY_TRIANGLES = 4;
-        /// Treats the mesh as a closed surface with outward triangles: points inside of it are inside.
+        /// Treats the mesh as a closed surface with outward triangles, so that it has an inside.
         const ORIENTED = 8;
         /// Joins vertices at the same place.
         const MERGE_DUPLICATE_VERTICES = 16;

@@ -7,9 +7,9 @@ use crate::physics_transform::{Position, Rotation};
 impl Collider {
     /// The convex parts of the collider, at its scale, with their poses relative to it.
     ///
-    /// A compound has its parts, also those of compounds in it. Meshes and height fields have their
-    /// triangles (in 2D polylines and height fields their segments), voxels their boxes. A convex shape is
-    /// its own only part.
+    /// The parts of a compound include the parts of nested compounds. The parts of meshes and height fields
+    /// are their triangles (in 2D the segments of polylines and height fields), the parts of voxels are their
+    /// boxes. A convex shape is its own only part.
     ///
     /// ```
     /// # use avian::{math::Vector, prelude::*};

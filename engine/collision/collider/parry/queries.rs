@@ -13,8 +13,8 @@ use kernel::shape::Shape;
 impl Collider {
     /// The nearest point of the collider to `point`, and whether `point` is inside.
     ///
-    /// If `solid`, a point inside is its own projection; else it is projected onto the boundary. All in
-    /// world coordinates.
+    /// If `solid`, a point inside is its own projection. Otherwise it is projected onto the boundary. All
+    /// points are in world coordinates.
     pub fn project_point(
         &self,
         translation: impl Into<Position>,
@@ -38,7 +38,7 @@ impl Collider {
 
     /// The distance from `point` to the collider, in metres.
     ///
-    /// A point inside has the distance 0 if `solid`, else minus the distance to the boundary.
+    /// A point inside has the distance 0 if `solid`, otherwise minus the distance to the boundary.
     pub fn distance_to_point(
         &self,
         translation: impl Into<Position>,
@@ -56,7 +56,7 @@ impl Collider {
         pose.map_or(Scalar::INFINITY, |pose| self.shape_scaled().distance_to_point(&pose, point, solid))
     }
 
-    /// Whether `point` is inside of the collider.
+    /// Whether `point` is inside the collider.
     pub fn contains_point(
         &self,
         translation: impl Into<Position>,
@@ -73,8 +73,9 @@ impl Collider {
 
     /// The first hit of a ray: distance along the ray, and outward normal.
     ///
-    /// Distances are in units of the length of `ray_direction`, so in metres for a unit vector. A ray
-    /// from inside hits at distance 0 with a zero normal if `solid`, else the boundary from within.
+    /// Distances are in units of the length of `ray_direction`, so in metres for a unit vector. If `solid`, a
+    /// ray that starts inside hits at distance 0 with a zero normal. Otherwise it hits the boundary from
+    /// within.
     pub fn cast_ray(
         &self,
         translation: impl Into<Position>,
@@ -92,12 +93,13 @@ impl Collider {
         }
         let (pose, ray) = usable_ray(translation, rotation, ray_origin, ray_direction)?;
         let hit = self.shape_scaled().cast_ray_and_get_normal(&pose, &ray, max_distance, solid)?;
-        // parry gives normals to rays from inside.
+        // Parry also gives normals to rays that start inside.
         let normal = if solid && hit.time_of_impact == 0.0 { Vector::ZERO } else { hit.normal };
         normal.is_finite().then_some((hit.time_of_impact, normal))
     }
 
-    /// Whether a ray meets the collider; inside counts. `max_distance` as in [`cast_ray`](Self::cast_ray).
+    /// Whether a ray hits the collider; a start inside counts. `max_distance` as in
+    /// [`cast_ray`](Self::cast_ray).
     pub fn intersects_ray(
         &self,
         translation: impl Into<Position>,
@@ -109,8 +111,8 @@ impl Collider {
         self.cast_ray(translation, rotation, ray_origin, ray_direction, max_distance, true).is_some()
     }
 
-    /// The kernel's shape and its pose, if the kernel answers for points. It does not know the inside of
-    /// surfaces, which a mesh may have, and takes no pose or point that is not finite.
+    /// The kernel's shape and its pose, if the kernel answers queries of points. The kernel does not know the
+    /// inside of surfaces, which a mesh may have, and accepts no pose or point that is not finite.
     fn native_at(
         &self,
         position: &Position,
@@ -158,7 +160,7 @@ fn cast(
     Some((hit.distance / length, vector_from_kernel(hit.normal)))
 }
 
-/// The pose in parry's type. `None` if it or the point is not finite: parry's projections panic then.
+/// The pose in parry's type. `None` if the pose or the point is not finite: parry's projections would panic.
 fn usable_pose(
     translation: impl Into<Position>,
     rotation: impl Into<Rotation>,

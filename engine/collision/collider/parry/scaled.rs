@@ -1,8 +1,9 @@
 //! Scaled shapes. A scale is applied in two parts: first it mirrors, then it stretches.
 //!
-//! A mirror of axes maps every shape onto one of its kind, or onto a turned one, so it is exact. Parry scales
-//! by factors of any sign, but keeps the windings of mirrored polygons, hulls and meshes, and has no mirrored
-//! voxels, height fields and cones. It also scales normals like points, which is right for even scales only.
+//! A mirror of axes maps every shape to a shape of its kind, or to a rotated one, so it is exact. Parry
+//! scales by factors of any sign, but keeps the windings of mirrored polygons, hulls and meshes, and has no
+//! mirrored voxels, height fields and cones. It also scales normals like points, which is correct for even
+//! scales only.
 
 use super::composite::flatten;
 use super::dim;
@@ -16,12 +17,12 @@ use crate::parry::shape::{
     Voxels,
 };
 
-/// The shape scaled along its axes; `None` if no shape of parry is that.
+/// The shape scaled along its axes; `None` if parry has no shape for the result.
 pub(super) fn scaled(shape: &SharedShape, scale: Vector, subdivisions: u32) -> Option<SharedShape> {
     if scale == Vector::ONE {
         return Some(shape.clone());
     }
-    // Curved shapes become hulls, from a triangle up to what still collides fast.
+    // Curved shapes become hulls, with at least a triangle and at most a hull that still collides fast.
     let subdivisions = subdivisions.clamp(2, 100);
     let scaled = without_panic(|| {
         if matches!(shape.as_typed_shape(), TypedShape::Custom(_)) {
@@ -37,12 +38,12 @@ pub(super) fn scaled(shape: &SharedShape, scale: Vector, subdivisions: u32) -> O
     (endless || is_usable(aabb.mins) && is_usable(aabb.maxs)).then_some(scaled)
 }
 
-/// The shape as parry scales it.
+/// The shape scaled by parry.
 fn by_parry(shape: &SharedShape, scale: Vector, subdivisions: u32) -> Option<SharedShape> {
     Some(SharedShape(shape.scale_dyn(scale, subdivisions)?.into()))
 }
 
-/// The shape with axes mirrored: `signs` has 1 and -1.
+/// The shape with mirrored axes: `signs` has 1 and -1.
 fn mirrored(shape: &SharedShape, signs: Vector, subdivisions: u32) -> Option<SharedShape> {
     Some(match shape.as_typed_shape() {
         TypedShape::Ball(_) | TypedShape::Cuboid(_) | TypedShape::RoundCuboid(_) => shape.clone(),
@@ -98,7 +99,7 @@ fn stretched(shape: &SharedShape, size: Vector, subdivisions: u32) -> Option<Sha
     })
 }
 
-/// A compound of changed parts. A part may become several.
+/// A compound of changed parts. A part may become several parts.
 fn parts(
     compound: &Compound,
     change: impl Fn(&mut Pose, &SharedShape) -> Option<SharedShape>,
@@ -123,7 +124,7 @@ fn scaled_half_space(half_space: &HalfSpace, scale: Vector) -> Option<SharedShap
     Some(SharedShape::new(HalfSpace::new(normal)))
 }
 
-/// A mesh with the scale in its vertices. What its flags ask for is computed again.
+/// A mesh with the scale applied to its vertices. Data that its flags request is computed again.
 fn scaled_mesh(mesh: &TriMesh, scale: Vector) -> Option<SharedShape> {
     let vertices = mesh.vertices().iter().map(|v| *v * scale).collect();
     let turned = turns_winding(scale);

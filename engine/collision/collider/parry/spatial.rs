@@ -1,4 +1,4 @@
-//! Queries of two colliders of which the kernel does not have a shape, by parry.
+//! Queries of two colliders by parry, if the kernel does not support both shapes.
 
 use super::{Collider, dim};
 use crate::math::{Scalar, Vector};
@@ -8,28 +8,28 @@ use crate::physics_transform::{Position, Rotation};
 /// A collider and its pose.
 type Placed<'a> = (&'a Collider, (Position, Rotation));
 
-/// How a shape is cast.
+/// Settings of a shape cast.
 pub(crate) struct ForeignCast {
-    /// In the world, of unit length.
+    /// Unit vector in the world.
     pub(crate) direction: Vector,
     /// In metres.
     pub(crate) max_distance: Scalar,
     /// The distance at which shapes meet, in metres.
     pub(crate) target_distance: Scalar,
-    /// Whether points and normals are wanted of shapes that overlap from the start.
+    /// Whether to compute points and normals of shapes that overlap at the start.
     pub(crate) compute_contact: bool,
-    /// Whether those are passed by.
+    /// Whether to ignore shapes that overlap at the start.
     pub(crate) ignore_penetration: bool,
 }
 
-/// The hit of a shape that was cast: on the collider, then on the shape, in the world.
+/// The hit of a cast shape. Points and normals are on the collider, then on the shape, in the world.
 pub(crate) struct ForeignHit {
     pub(crate) distance: Scalar,
     pub(crate) points: [Vector; 2],
     pub(crate) normals: [Vector; 2],
 }
 
-/// The first hit of shape `b`, which moves, on collider `a`.
+/// The first hit of the moving shape `b` on collider `a`.
 pub(crate) fn cast_foreign(a: Placed, b: Placed, cast: &ForeignCast) -> Option<ForeignHit> {
     let [pose_a, pose_b] = [a.1, b.1].map(|(position, rotation)| dim::pose(position.0, rotation));
     if !(pose_a.is_finite() && pose_b.is_finite()) {

@@ -1,8 +1,8 @@
-//! Constructors that refuse what those of [`Collider`] repair, and the checks that they and
-//! [`ColliderConstructor`](crate::collision::collider::ColliderConstructor) share.
+//! Constructors that return an error where other constructors of [`Collider`] repair their input, and the
+//! checks that they share with [`ColliderConstructor`](crate::collision::collider::ColliderConstructor).
 //!
-//! A repaired collider suits values in code: the warning names the constructor. Values from files and editors
-//! need an error at the place that read them.
+//! Repair suits values in code: the warning names the constructor. Values from files and editors need an
+//! error at the place that reads them.
 
 use super::{
     Collider, ColliderError as Error, TrimeshFlags, VhacdParameters,
@@ -19,31 +19,31 @@ use crate::{
 /// The result of a constructor.
 pub(super) type Made<T = Collider> = Result<T, Error>;
 
-/// Sizes have to be positive and finite.
+/// Checks that sizes are positive and finite.
 pub(super) fn sizes(values: &[Scalar]) -> Made<()> {
     let usable = |v: &Scalar| (MIN_LENGTH..=MAX_LENGTH).contains(v);
     if values.iter().all(usable) { Ok(()) } else { Err(Error::InvalidSize) }
 }
 
-/// Sizes that may be zero.
+/// Checks that sizes are finite and not negative.
 pub(super) fn sizes_or_zero(values: &[Scalar]) -> Made<()> {
     let usable = |v: &Scalar| (0.0..=MAX_LENGTH).contains(v);
     if values.iter().all(usable) { Ok(()) } else { Err(Error::NegativeSize) }
 }
 
-/// Points have to be finite.
+/// Checks that points are finite.
 pub(super) fn points(points: &[Vector]) -> Made<()> {
     let all = points.iter().all(|p| is_usable(*p));
     if all { Ok(()) } else { Err(Error::InvalidPoint) }
 }
 
-/// At least one segment or triangle has to have different corners that exist. Others are left out.
+/// Checks that at least one segment or triangle has distinct corners that exist. Others are left out.
 pub(super) fn elements<const N: usize>(vertices: &[Vector], elements: &[[u32; N]]) -> Made<()> {
     let any = elements.iter().any(|element| is_element_usable(vertices, element));
     if any { Ok(()) } else { Err(Error::NoElements) }
 }
 
-/// All segments or triangles have to have different corners that exist, and there has to be one.
+/// Checks that there is a segment or triangle, and that all have distinct corners that exist.
 pub(super) fn all_elements<const N: usize>(vertices: &[Vector], elements: &[[u32; N]]) -> Made<()> {
     match elements.iter().position(|element| !is_element_usable(vertices, element)) {
         Some(bad) => Err(Error::InvalidElement(bad as u32)),
@@ -52,25 +52,25 @@ pub(super) fn all_elements<const N: usize>(vertices: &[Vector], elements: &[[u32
     }
 }
 
-/// The voxels of what is voxelised must not be too many.
+/// Checks that a voxelised shape does not have too many voxels.
 pub(super) fn voxel_size(vertices: &[Vector], voxel_size: Scalar) -> Made<()> {
     sizes(&[voxel_size])?;
     if voxels_fit(vertices, voxel_size) { Ok(()) } else { Err(Error::TooManyVoxels) }
 }
 
-/// Parameters of a decomposition have to be within their ranges.
+/// Checks that parameters of a decomposition are within their ranges.
 fn parameters(parameters: &VhacdParameters) -> Made<()> {
     let usable = usable_parameters(parameters, &mut Input::default()) == *parameters;
     if usable { Ok(()) } else { Err(Error::InvalidParameters) }
 }
 
-/// The collider, if anything was left of what it was made from.
+/// The collider, or an error if nothing was left of its input.
 pub(super) fn made(collider: Collider) -> Made {
     let is_speck = collider.shape().as_ball().is_some_and(|ball| ball.radius <= MIN_LENGTH);
     if is_speck { Err(Error::Empty) } else { Ok(collider) }
 }
 
-/// A polyline of the segments that can be used.
+/// A polyline of the usable segments.
 pub(super) fn polyline(vertices: &[Vector], indices: Option<&[[u32; 2]]>) -> Made {
     match indices {
         Some(indices) => elements(vertices, indices)?,
@@ -80,7 +80,7 @@ pub(super) fn polyline(vertices: &[Vector], indices: Option<&[[u32; 2]]>) -> Mad
     made(Collider::polyline(vertices.to_vec(), indices.map(<[_]>::to_vec)))
 }
 
-/// A mesh of the triangles that can be used.
+/// A mesh of the usable triangles.
 pub(super) fn trimesh(vertices: &[Vector], indices: &[[u32; 3]], flags: TrimeshFlags) -> Made {
     elements(vertices, indices)?;
     made(Collider::trimesh_with_config(vertices.to_vec(), indices.to_vec(), flags))
@@ -101,7 +101,7 @@ fn is_in_range(cell: &IVector) -> bool {
     cell.to_array().iter().all(|v| v.unsigned_abs() as u64 <= MAX_VOXEL as u64)
 }
 
-/// Constructors that return an error for what their namesakes without `try_` repair.
+/// Constructors that return an error where their namesakes without `try_` repair the input.
 ///
 /// ```
 /// # use avian::{collision::collider::ColliderError, math::Vector, prelude::*};
@@ -165,7 +165,7 @@ impl Collider {
     pub fn try_triangle(a: Vector, b: Vector, c: Vector) -> Result<Self, Error> {
         points(&[a, b, c])?;
         let collider = Self::triangle(a, b, c);
-        // One without an area becomes a segment.
+        // A triangle without an area becomes a segment.
         if collider.shape().as_triangle().is_some() { Ok(collider) } else { Err(Error::NoArea) }
     }
 

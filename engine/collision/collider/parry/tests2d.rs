@@ -77,7 +77,7 @@ fn every_primitive_converts() {
     area(Capsule2d::new(1.0, 2.0).into(), 4.0 + pi, 1.0, 2.0);
     let square = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
     area(ConvexPolygon::new(square).expect("convex").into(), 1.0, 0.5, 0.5);
-    // An L, either way round.
+    // An L, in both orientations.
     let l = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)].map(Vec2::from);
     area(Polygon::new(l).into(), 3.0, 1.0, 1.0);
     area(Polygon::new(l.into_iter().rev()).into(), 3.0, 1.0, 1.0);

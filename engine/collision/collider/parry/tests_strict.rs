@@ -6,7 +6,7 @@ use crate::parry::math::IVector;
 use crate::physics_transform::{Position, Rotation};
 use ColliderError as Error;
 
-/// Sizes that are none.
+/// Invalid sizes.
 pub(super) const BAD: [Scalar; 7] =
     [0.0, -1.0, Scalar::NAN, Scalar::INFINITY, Scalar::NEG_INFINITY, Scalar::MAX, Scalar::MIN_POSITIVE];
 

@@ -1,4 +1,4 @@
-//! [`GearJoint`]: wheels that mesh.
+//! [`GearJoint`]: meshing gears.
 
 use bevy_ecs::{
     component::Component,
@@ -17,12 +17,12 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Lets two wheels turn together, as if they meshed: the angle of the first and `ratio` times that of the
-/// second keep their sum. Beyond Avian.
+/// Couples two wheels as meshing gears: the angle of the first wheel plus `ratio` times the angle of the
+/// second is constant. Beyond Avian.
 ///
-/// It ties turns only: each wheel needs a hinge of its own, such as a
-/// [`RevoluteJoint`](super::RevoluteJoint) to a post. Turns are counted, and nothing slips. Where the wheels
-/// are as the joint begins to act is where they mesh.
+/// The joint couples only rotations: each wheel needs its own hinge, such as a
+/// [`RevoluteJoint`](super::RevoluteJoint) to a post. Full turns are counted, and the teeth do not slip. The
+/// wheels mesh at the angles at which the joint starts to act.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -42,17 +42,17 @@ pub struct GearJoint {
     pub body1: Entity,
     /// The second wheel.
     pub body2: Entity,
-    /// The weight of the second angle. Positive for wheels that turn in opposite ways, negative for a chain
-    /// or a wheel inside of a ring. Not 0.
+    /// The weight of the second angle. Positive for wheels that turn in opposite directions, negative for a
+    /// chain or an internal gear. Not 0.
     pub ratio: Scalar,
-    /// How far the teeth give way, in rad/(N·m) at the first wheel. 0 for not at all.
+    /// Compliance of the teeth, in rad/(N·m) at the first wheel. 0 is rigid.
     pub compliance: Scalar,
 }
 
 crate::type_path::type_path!(GearJoint, "dynamics::joints::gear");
 
 impl GearJoint {
-    /// Two wheels of one size.
+    /// A joint of two wheels of equal size.
     pub const fn new(body1: Entity, body2: Entity) -> Self {
         Self { body1, body2, ratio: 1.0, compliance: 0.0 }
     }
@@ -63,12 +63,12 @@ impl GearJoint {
         self
     }
 
-    /// Sets the ratio by the radii of two wheels that mesh outside, in metres: the second over the first.
+    /// Sets the ratio from the radii of two externally meshing wheels, in metres: the second over the first.
     pub const fn with_radii(self, radius1: Scalar, radius2: Scalar) -> Self {
         self.with_ratio(radius2 / radius1)
     }
 
-    /// Sets how far the teeth give way, in rad/(N·m) at the first wheel.
+    /// Sets the compliance of the teeth, in rad/(N·m) at the first wheel.
     pub const fn with_compliance(mut self, compliance: Scalar) -> Self {
         self.compliance = compliance;
         self

@@ -1,4 +1,4 @@
-//! The kinds of joints in 2D, and what limits and bases have there only. `dim3` exports the same names.
+//! The kinds of joints in 2D, and 2D methods of limits and bases. `dim3` exports the same names.
 
 mod gear;
 mod rack_and_pinion;
@@ -30,30 +30,30 @@ joint_kinds! {
 }
 
 impl JointBasis {
-    /// The basis whose x axis has a direction on the body. Any length will do.
+    /// The basis with its x axis along a vector on the body. The vector's length does not matter.
     pub fn from_local_x(x_axis: Vector) -> Self {
         Self::Local(orthonormal_basis_from_vec(x_axis))
     }
 
-    /// The basis whose y axis has a direction on the body. Any length will do.
+    /// The basis with its y axis along a vector on the body. The vector's length does not matter.
     pub fn from_local_y(y_axis: Vector) -> Self {
         Self::from_local_x(-y_axis.perp())
     }
 
-    /// The basis whose x axis has a direction in the world. Any length will do.
+    /// The basis with its x axis along a vector in the world. The vector's length does not matter.
     pub fn from_global_x(x_axis: Vector) -> Self {
         Self::FromGlobal(orthonormal_basis_from_vec(x_axis))
     }
 
-    /// The basis whose y axis has a direction in the world. Any length will do.
+    /// The basis with its y axis along a vector in the world. The vector's length does not matter.
     pub fn from_global_y(y_axis: Vector) -> Self {
         Self::from_global_x(-y_axis.perp())
     }
 }
 
 impl AngleLimit {
-    /// The angle in radians by which the second body has to turn to be within the limits, at most
-    /// `max_correction`. `None` within them.
+    /// The angle in radians by which the second body must turn to satisfy the limits, at most
+    /// `max_correction`. `None` within the limits.
     pub fn compute_correction(&self, angle_difference: Scalar, max_correction: Scalar) -> Option<Scalar> {
         let excess = self.excess(angle_difference);
         (excess != 0.0).then(|| (-excess).max(-max_correction).min(max_correction))

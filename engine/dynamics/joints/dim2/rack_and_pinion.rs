@@ -1,4 +1,4 @@
-//! [`RackAndPinionJoint`]: a rack that a wheel moves.
+//! [`RackAndPinionJoint`]: a pinion that drives a rack.
 
 use bevy_ecs::{
     component::Component,
@@ -17,11 +17,13 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Lets a rack slide as a pinion turns: a radian moves it by the pinion's radius. Beyond Avian.
+/// Couples a rack to a pinion: per radian that the pinion turns, the rack slides by the pinion's radius.
+/// Beyond Avian.
 ///
-/// It ties both only: the pinion needs a hinge of its own, such as a [`RevoluteJoint`](super::RevoluteJoint),
-/// and the rack a slide, such as a [`PrismaticJoint`](super::PrismaticJoint). Turns are counted, and nothing
-/// slips. Where both are as the joint begins to act is where they mesh.
+/// The joint couples only these two motions: the pinion needs its own hinge, such as a
+/// [`RevoluteJoint`](super::RevoluteJoint), and the rack its own slider, such as a
+/// [`PrismaticJoint`](super::PrismaticJoint). Full turns are counted, and the teeth do not slip. Rack and
+/// pinion mesh at the poses at which the joint starts to act.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -42,24 +44,24 @@ pub struct RackAndPinionJoint {
     pub body1: Entity,
     /// The rack.
     pub body2: Entity,
-    /// The direction in the world in which the rack moves as the pinion turns counter-clockwise. Its length
-    /// does not matter.
+    /// The world direction in which the rack moves when the pinion turns counter-clockwise. Its length does
+    /// not matter.
     pub rack_axis: Vector,
     /// The radius of the pinion, in metres. Not 0.
     pub radius: Scalar,
-    /// How far the teeth give way, in rad/(N·m) at the pinion. 0 for not at all.
+    /// Compliance of the teeth, in rad/(N·m) at the pinion. 0 is rigid.
     pub compliance: Scalar,
 }
 
 crate::type_path::type_path!(RackAndPinionJoint, "dynamics::joints::rack_and_pinion");
 
 impl RackAndPinionJoint {
-    /// A pinion of a metre, and a rack that moves along the x axis: below it.
+    /// A pinion with a radius of 1 m, and a rack below it that moves along the x axis.
     pub const fn new(body1: Entity, body2: Entity) -> Self {
         Self { body1, body2, rack_axis: Vector::X, radius: 1.0, compliance: 0.0 }
     }
 
-    /// Sets the direction in the world in which the rack moves as the pinion turns counter-clockwise.
+    /// Sets the world direction in which the rack moves when the pinion turns counter-clockwise.
     pub const fn with_rack_axis(mut self, axis: Vector) -> Self {
         self.rack_axis = axis;
         self
@@ -71,7 +73,7 @@ impl RackAndPinionJoint {
         self
     }
 
-    /// Sets how far the teeth give way, in rad/(N·m) at the pinion.
+    /// Sets the compliance of the teeth, in rad/(N·m) at the pinion.
     pub const fn with_compliance(mut self, compliance: Scalar) -> Self {
         self.compliance = compliance;
         self

@@ -19,10 +19,10 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds a point of one body at a point of another, and lets them turn about it: pins, wheels, hinges.
+/// Holds a point of one body at a point of another and lets the bodies turn about it: pins, wheels, hinges.
 ///
-/// The angle is that of the second basis relative to the first, counter-clockwise. It may have limits, also
-/// beyond a full turn, and a motor.
+/// The joint angle is measured from the first basis to the second, counter-clockwise. It may have limits,
+/// even beyond a full turn, and a motor.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -49,11 +49,11 @@ pub struct RevoluteJoint {
     pub frame1: JointFrame,
     /// The frame on the second body.
     pub frame2: JointFrame,
-    /// The least and the greatest angle, if there are any.
+    /// Minimum and maximum angle, if any.
     pub angle_limit: Option<AngleLimit>,
-    /// How far the anchors give way, in m/N. 0 for not at all.
+    /// Compliance of the anchors, in m/N. 0 is rigid.
     pub point_compliance: Scalar,
-    /// How far the limits give way, in rad/(N·m). 0 for not at all.
+    /// Compliance of the limits, in rad/(N·m). 0 is rigid.
     pub limit_compliance: Scalar,
     /// The motor. Disabled by default.
     pub motor: AngularMotor,
@@ -76,7 +76,7 @@ impl RevoluteJoint {
         }
     }
 
-    /// Sets the least and the greatest angle, in radians.
+    /// Sets the minimum and maximum angle, in radians.
     pub const fn with_angle_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.angle_limit = Some(AngleLimit::new(min, max));
         self
@@ -90,13 +90,13 @@ impl RevoluteJoint {
         self
     }
 
-    /// Sets how far the anchors give way, in m/N.
+    /// Sets the compliance of the anchors, in m/N.
     pub const fn with_point_compliance(mut self, compliance: Scalar) -> Self {
         self.point_compliance = compliance;
         self
     }
 
-    /// Sets how far the limits give way, in rad/(N·m).
+    /// Sets the compliance of the limits, in rad/(N·m).
     pub const fn with_limit_compliance(mut self, compliance: Scalar) -> Self {
         self.limit_compliance = compliance;
         self

@@ -27,14 +27,15 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds a wheel, the second body, on a chassis, the first: it moves along the suspension's axis by a spring,
-/// and spins. Beyond Avian.
+/// Holds a wheel, the second body, on a chassis, the first. The wheel moves along the suspension axis on a
+/// spring, and spins. Beyond Avian.
 ///
-/// The wheel turns about the second anchor. Where it touches the ground, friction drives the chassis.
+/// The wheel turns about the second anchor. Friction with the ground drives the chassis.
 ///
-/// The spring is a motor along the axis, whose target is its length without load. With
-/// [`MotorModel::SpringDamper`] its stiffness follows from the lighter body, which is the wheel; give it in
-/// N/m by [`MotorModel::ForceBased`] to choose how far the chassis sags: by its weight over the stiffness.
+/// The spring is a motor along the axis. Its target position is the length of the unloaded spring. With
+/// [`MotorModel::SpringDamper`] its stiffness follows from the lighter body, usually the wheel. With
+/// [`MotorModel::ForceBased`] the stiffness is given in N/m, and the chassis sags by its weight over the
+/// stiffness.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -66,9 +67,9 @@ pub struct WheelJoint {
     pub frame2: JointFrame,
     /// The direction of the suspension in the joint's frames. Its length does not matter.
     pub suspension_axis: Vector,
-    /// The spring along the suspension's axis. Critically damped, 5 Hz, by default.
+    /// The spring along the suspension axis. By default it is critically damped, with 5 Hz.
     pub suspension: LinearMotor,
-    /// The least and the greatest position along the suspension's axis, in metres, if there are any.
+    /// Minimum and maximum position along the suspension axis, in metres, if any.
     pub suspension_limits: Option<DistanceLimit>,
     /// The motor that spins the wheel. Disabled by default.
     pub motor: AngularMotor,
@@ -100,13 +101,13 @@ impl WheelJoint {
         self
     }
 
-    /// Sets the spring. Disabled, the wheel moves freely between the limits.
+    /// Sets the spring. If it is disabled, the wheel moves freely between the limits.
     pub const fn with_suspension(mut self, suspension: LinearMotor) -> Self {
         self.suspension = suspension;
         self
     }
 
-    /// Sets the least and the greatest position along the suspension's axis, in metres.
+    /// Sets the minimum and maximum position along the suspension axis, in metres.
     pub const fn with_suspension_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.suspension_limits = Some(DistanceLimit::new(min, max));
         self
@@ -134,7 +135,7 @@ impl JointKind for WheelJoint {
     }
 
     fn set_axes(&self, mut def: JointDef) -> JointDef {
-        // The x axis of the frames is that of the suspension.
+        // The x axis of the frames is the suspension axis.
         def.axes[X] = limited(self.suspension_limits, 0.0);
         def.axes[X].motor = linear_motor(&self.suspension);
         def.axes[ANGLE].motor = angular_motor(&self.motor);

@@ -1,4 +1,4 @@
-//! The kinds of joints in 3D, and what limits and bases have there only. `dim2` exports the same names.
+//! The kinds of joints in 3D, and 3D methods of limits and bases. `dim2` exports the same names.
 
 mod gear;
 mod rack_and_pinion;
@@ -34,7 +34,7 @@ joint_kinds! {
     spherical: SphericalJoint,
 }
 
-/// Defines the bases from two axes, of which the first keeps its direction.
+/// Defines constructors of bases from two axes. The first axis keeps its direction.
 macro_rules! from_axes {
     ($($local:ident, $global:ident: $first:literal, $second:literal => |$a:ident, $b:ident, $c:ident| $axes:expr;)+) => {
         impl JointBasis {$(
@@ -61,8 +61,8 @@ from_axes! {
     from_local_yz, from_global_yz: "y", "z" => |y_axis, z_axis, x_axis| [x_axis, y_axis, z_axis];
 }
 
-/// The rotation to axes that are made of the first vector, what the second has across it, and the
-/// normal of both.
+/// The rotation to the axes along the first vector, along the component of the second perpendicular to it,
+/// and along the normal of both.
 fn from_plane(
     first: Vector,
     second: Vector,
@@ -77,10 +77,10 @@ fn from_plane(
 }
 
 impl AngleLimit {
-    /// The rotation vector in radians by which the second body has to turn to be within the limits, at most
-    /// `max_correction` long. `None` within them.
+    /// The rotation vector in radians by which the second body must turn to satisfy the limits, at most
+    /// `max_correction` long. `None` within the limits.
     ///
-    /// The angle is that from `axis1` to `axis2` about `limit_axis`. All have unit length.
+    /// The angle is measured from `axis1` to `axis2` about `limit_axis`. All three have unit length.
     pub fn compute_correction(
         &self,
         limit_axis: Vector,
@@ -130,7 +130,7 @@ mod tests {
         is(JointBasis::from_local_yz(a, b), Vector::Y, Vector::Z);
     }
 
-    /// Whether the x axis of a kernel's frame is an axis.
+    /// Whether the x axis of a kernel frame equals `axis`.
     fn has_x(frame: &JointFrame, axis: Vector) -> bool {
         (frame.basis.rotate(KernelVector::X) - vector_to_kernel(axis.normalize())).length() < 1e-6
     }

@@ -25,11 +25,11 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds a point and an axis of one body at a point and an axis of another, and lets them turn about the
+/// Holds a point and an axis of one body at a point and an axis of another and lets the bodies turn about the
 /// axis: hinges, doors, wheels.
 ///
-/// The angle is that of the second basis relative to the first about the axis, right-handed. It may have
-/// limits, also beyond a full turn, and a motor.
+/// The joint angle is measured from the first basis to the second about the axis, right-handed. It may have
+/// limits, even beyond a full turn, and a motor.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -56,13 +56,13 @@ pub struct RevoluteJoint {
     pub frame2: JointFrame,
     /// The direction of the axis in the joint's frames. Its length does not matter.
     pub hinge_axis: Vector,
-    /// The least and the greatest angle, if there are any.
+    /// Minimum and maximum angle, if any.
     pub angle_limit: Option<AngleLimit>,
-    /// How far the anchors give way, in m/N. 0 for not at all.
+    /// Compliance of the anchors, in m/N. 0 is rigid.
     pub point_compliance: Scalar,
-    /// How far the axes give way, in rad/(N·m). 0 for not at all.
+    /// Compliance of the axes, in rad/(N·m). 0 is rigid.
     pub align_compliance: Scalar,
-    /// How far the limits give way, in rad/(N·m). 0 for not at all.
+    /// Compliance of the limits, in rad/(N·m). 0 is rigid.
     pub limit_compliance: Scalar,
     /// The motor. Disabled by default.
     pub motor: AngularMotor,
@@ -112,7 +112,7 @@ impl RevoluteJoint {
         Some(rotation_of(self.local_basis2()?) * self.hinge_axis)
     }
 
-    /// Sets the least and the greatest angle, in radians.
+    /// Sets the minimum and maximum angle, in radians.
     pub const fn with_angle_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.angle_limit = Some(AngleLimit::new(min, max));
         self
@@ -127,19 +127,19 @@ impl RevoluteJoint {
         self
     }
 
-    /// Sets how far the anchors give way, in m/N.
+    /// Sets the compliance of the anchors, in m/N.
     pub const fn with_point_compliance(mut self, compliance: Scalar) -> Self {
         self.point_compliance = compliance;
         self
     }
 
-    /// Sets how far the axes give way, in rad/(N·m).
+    /// Sets the compliance of the axes, in rad/(N·m).
     pub const fn with_align_compliance(mut self, compliance: Scalar) -> Self {
         self.align_compliance = compliance;
         self
     }
 
-    /// Sets how far the limits give way, in rad/(N·m).
+    /// Sets the compliance of the limits, in rad/(N·m).
     pub const fn with_limit_compliance(mut self, compliance: Scalar) -> Self {
         self.limit_compliance = compliance;
         self

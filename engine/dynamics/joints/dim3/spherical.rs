@@ -1,4 +1,4 @@
-//! [`SphericalJoint`]: ball and socket.
+//! [`SphericalJoint`]: a ball and socket.
 
 use bevy_ecs::{
     component::Component,
@@ -26,11 +26,11 @@ use super::super::{
 use super::spherical_motor::SphericalMotor;
 use crate::math::{Scalar, Vector};
 
-/// Holds a point of one body at a point of another, and lets them turn in any way: shoulders,
-/// chains, trailers.
+/// Holds a point of one body at a point of another and lets the bodies turn freely: shoulders, chains,
+/// trailers.
 ///
-/// Swing is the angle between the twist axes of both frames, from 0 to π. Twist is the angle about them. Both
-/// may have limits, and a motor turns the ball to a rotation.
+/// Swing is the angle between the twist axes of both frames, from 0 to π. Twist is the angle about the twist
+/// axes. Both may have limits, and a motor may turn the joint to a rotation.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -60,16 +60,15 @@ pub struct SphericalJoint {
     pub frame2: JointFrame,
     /// The direction of the twist axis in the joint's frames. Its length does not matter.
     pub twist_axis: Vector,
-    /// The least and the greatest swing, if there are any. It is never negative, so a least value below 0
-    /// has no effect.
+    /// Minimum and maximum swing, if any. Swing is never negative, so a minimum below 0 has no effect.
     pub swing_limit: Option<AngleLimit>,
-    /// The least and the greatest twist, if there are any.
+    /// Minimum and maximum twist, if any.
     pub twist_limit: Option<AngleLimit>,
-    /// How far the anchors give way, in m/N. 0 for not at all.
+    /// Compliance of the anchors, in m/N. 0 is rigid.
     pub point_compliance: Scalar,
-    /// How far the limits of swing give way, in rad/(N·m). 0 for not at all.
+    /// Compliance of the swing limits, in rad/(N·m). 0 is rigid.
     pub swing_compliance: Scalar,
-    /// How far the limits of twist give way, in rad/(N·m). 0 for not at all.
+    /// Compliance of the twist limits, in rad/(N·m). 0 is rigid.
     pub twist_compliance: Scalar,
     /// The motor. Disabled by default.
     pub motor: SphericalMotor,
@@ -114,13 +113,13 @@ impl SphericalJoint {
         Some(rotation_of(self.local_basis2()?) * self.twist_axis)
     }
 
-    /// Sets the least and the greatest swing, in radians.
+    /// Sets the minimum and maximum swing, in radians.
     pub const fn with_swing_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.swing_limit = Some(AngleLimit::new(min, max));
         self
     }
 
-    /// Sets the least and the greatest twist, in radians.
+    /// Sets the minimum and maximum twist, in radians.
     pub const fn with_twist_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.twist_limit = Some(AngleLimit::new(min, max));
         self
@@ -135,19 +134,19 @@ impl SphericalJoint {
         self
     }
 
-    /// Sets how far the anchors give way, in m/N.
+    /// Sets the compliance of the anchors, in m/N.
     pub const fn with_point_compliance(mut self, compliance: Scalar) -> Self {
         self.point_compliance = compliance;
         self
     }
 
-    /// Sets how far the limits of swing give way, in rad/(N·m).
+    /// Sets the compliance of the swing limits, in rad/(N·m).
     pub const fn with_swing_compliance(mut self, compliance: Scalar) -> Self {
         self.swing_compliance = compliance;
         self
     }
 
-    /// Sets how far the limits of twist give way, in rad/(N·m).
+    /// Sets the compliance of the twist limits, in rad/(N·m).
     pub const fn with_twist_compliance(mut self, compliance: Scalar) -> Self {
         self.twist_compliance = compliance;
         self

@@ -1,4 +1,4 @@
-//! [`SphericalMotor`]: turns the ball of a [`SphericalJoint`](super::SphericalJoint) to a rotation.
+//! [`SphericalMotor`]: turns a [`SphericalJoint`](super::SphericalJoint) to a rotation.
 
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg(feature = "serialize")]
@@ -23,8 +23,8 @@ use crate::{
 /// A motor that turns the second body of a [`SphericalJoint`](super::SphericalJoint) to a rotation and an
 /// angular velocity. Beyond Avian.
 ///
-/// Targets may change in every frame: an animated skeleton whose bones are set as targets is followed as far
-/// as the torque reaches.
+/// Targets may change in every frame. A ragdoll follows an animated skeleton whose bone rotations are set as
+/// targets, up to the maximum torque.
 ///
 /// ```
 /// # use avian3d::prelude::*;
@@ -45,37 +45,37 @@ use crate::{
 pub struct SphericalMotor {
     /// Whether the motor acts.
     pub enabled: bool,
-    /// The wanted rotation of the joint's second frame in its first.
+    /// The target rotation of the joint's second frame relative to the first.
     pub target_rotation: Quaternion,
-    /// The wanted angular velocity of the second body relative to the first, along the axes of the joint's
+    /// The target angular velocity of the second body relative to the first, along the axes of the joint's
     /// first frame, in rad/s.
     pub target_velocity: Vector,
-    /// How strongly it turns, about which axes.
+    /// The axes that the motor drives, with stiffness, damping and maximum torque.
     pub drive: SphericalDrive,
 }
 
 crate::type_path::type_path!(SphericalMotor, "dynamics::joints::spherical");
 
-/// How a [`SphericalMotor`] turns.
+/// The axes and strengths by which a [`SphericalMotor`] turns.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(type_path = false, Debug, PartialEq)]
 pub enum SphericalDrive {
-    /// Along the shortest arc, by one torque about any axis (SLERP). The default.
+    /// One torque along the shortest arc (SLERP). The default.
     Slerp(AngularDrive),
-    /// The twist, about the twist axis, and the swing, about the two axes across it, on their own.
+    /// The twist about the twist axis and the swing about the two perpendicular axes, driven separately.
     TwistAndSwing {
-        /// How strongly it twists.
+        /// The drive of the twist.
         twist: AngularDrive,
-        /// How strongly it swings.
+        /// The drive of the swing.
         swing: AngularDrive,
     },
 }
 
 crate::type_path::type_path!(SphericalDrive, "dynamics::joints::spherical");
 
-/// How strongly a motor turns about an axis.
+/// Strength of a motor about an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -83,7 +83,7 @@ crate::type_path::type_path!(SphericalDrive, "dynamics::joints::spherical");
 pub struct AngularDrive {
     /// Stiffness and damping.
     pub motor_model: MotorModel,
-    /// The greatest torque, in N·m. [`Scalar::MAX`] for no maximum.
+    /// Maximum torque, in N·m. [`Scalar::MAX`] for no maximum.
     pub max_torque: Scalar,
 }
 
@@ -96,12 +96,12 @@ impl Default for AngularDrive {
 }
 
 impl AngularDrive {
-    /// A drive without a greatest torque.
+    /// A drive without a maximum torque.
     pub const fn new(motor_model: MotorModel) -> Self {
         Self { motor_model, max_torque: Scalar::MAX }
     }
 
-    /// Sets the greatest torque, in N·m.
+    /// Sets the maximum torque, in N·m.
     pub const fn with_max_torque(mut self, max_torque: Scalar) -> Self {
         self.max_torque = max_torque;
         self
@@ -115,7 +115,7 @@ impl Default for SphericalMotor {
 }
 
 impl SphericalMotor {
-    /// A motor that is enabled, along the shortest arc, towards equal frames at rest.
+    /// An enabled motor along the shortest arc. Its target is equal frames at rest.
     pub const fn new(motor_model: MotorModel) -> Self {
         Self {
             enabled: true,
@@ -125,7 +125,7 @@ impl SphericalMotor {
         }
     }
 
-    /// A motor that is disabled, towards equal frames at rest.
+    /// A disabled motor. Its target is equal frames at rest.
     pub const fn new_disabled(motor_model: MotorModel) -> Self {
         Self { enabled: false, ..Self::new(motor_model) }
     }
@@ -136,20 +136,20 @@ impl SphericalMotor {
         self
     }
 
-    /// Sets the wanted rotation of the joint's second frame in its first.
+    /// Sets the target rotation of the joint's second frame relative to the first.
     pub fn with_target_rotation(mut self, rotation: impl Into<Rotation>) -> Self {
         self.target_rotation = rotation.into().0;
         self
     }
 
-    /// Sets the wanted angular velocity, along the axes of the joint's first frame, in rad/s.
+    /// Sets the target angular velocity, along the axes of the joint's first frame, in rad/s.
     pub const fn with_target_velocity(mut self, velocity: Vector) -> Self {
         self.target_velocity = velocity;
         self
     }
 
-    /// Sets the greatest torque, in N·m: along the shortest arc that about any axis, else that
-    /// about each axis.
+    /// Sets the maximum torque, in N·m: the total torque along the shortest arc, or the torque about each
+    /// axis if twist and swing are separate.
     pub const fn with_max_torque(mut self, max_torque: Scalar) -> Self {
         match &mut self.drive {
             SphericalDrive::Slerp(drive) => drive.max_torque = max_torque,
@@ -161,13 +161,14 @@ impl SphericalMotor {
         self
     }
 
-    /// Drives twist and swing on their own.
+    /// Drives twist and swing separately.
     pub const fn with_twist_and_swing(mut self, twist: AngularDrive, swing: AngularDrive) -> Self {
         self.drive = SphericalDrive::TwistAndSwing { twist, swing };
         self
     }
 
-    /// Sets the motors of a joint whose frames were turned by `turn`, so that their x axis is the twist axis.
+    /// Sets the motors of a joint whose frames were rotated by `turn`, which makes their x axis the twist
+    /// axis.
     pub(super) fn set_motors(&self, def: &mut JointDef, turn: KernelRot) {
         if !self.enabled {
             return;
@@ -199,10 +200,10 @@ impl SphericalMotor {
     }
 }
 
-/// The angle of a rotation about x, and the vector across x of the swing that follows it, in rad.
+/// The twist angle of a rotation about x, and the y and z components of the swing's rotation vector, in rad.
 ///
-/// With q = swing · twist, twist is the part of q about x, of half angle atan2(qx, qw), and swing is q
-/// times its inverse.
+/// With q = swing · twist, twist is the component of q about x, with half angle atan2(qx, qw), and swing is q
+/// times the inverse of twist.
 fn twist_and_swing(q: KernelRot) -> [f32; 3] {
     let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
     let [x, y, z, w] = [q.x, q.y, q.z, q.w].map(|part| f64::from(part * sign));

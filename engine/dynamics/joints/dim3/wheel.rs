@@ -27,15 +27,16 @@ use super::super::{
 };
 use crate::math::{Scalar, Vector};
 
-/// Holds a wheel, the second body, on a chassis, the first: it moves along the suspension's axis by a spring,
-/// and spins. Beyond Avian.
+/// Holds a wheel, the second body, on a chassis, the first. The wheel moves along the suspension axis on a
+/// spring, and spins. Beyond Avian.
 ///
-/// The wheel spins about its axle. It is steered about the suspension's axis: by a motor, to its target
-/// angle. While that motor is disabled the axle is held across.
+/// The wheel spins about its axle. The steering motor turns the axle about the suspension axis to its target
+/// angle. While the steering motor is disabled, the steering angle is locked at 0.
 ///
-/// The spring is a motor along the axis, whose target is its length without load. With
-/// [`MotorModel::SpringDamper`] its stiffness follows from the lighter body, which is the wheel; give it in
-/// N/m by [`MotorModel::ForceBased`] to choose how far the chassis sags: by its weight over the stiffness.
+/// The spring is a motor along the axis. Its target position is the length of the unloaded spring. With
+/// [`MotorModel::SpringDamper`] its stiffness follows from the lighter body, usually the wheel. With
+/// [`MotorModel::ForceBased`] the stiffness is given in N/m, and the chassis sags by its weight over the
+/// stiffness.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -65,20 +66,18 @@ pub struct WheelJoint {
     pub frame1: JointFrame,
     /// The frame on the wheel.
     pub frame2: JointFrame,
-    /// The direction of the suspension in the joint's frames. What it has along the axle does not count, and
-    /// its length does not matter.
+    /// The direction of the suspension in the joint's frames. The component along the axle is ignored, and
+    /// the length does not matter.
     pub suspension_axis: Vector,
     /// The direction of the axle in the joint's frames. Its length does not matter.
     pub axle: Vector,
-    /// The spring along the suspension's axis. Critically damped, 5 Hz, by default.
+    /// The spring along the suspension axis. By default it is critically damped, with 5 Hz.
     pub suspension: LinearMotor,
-    /// The least and the greatest position along the suspension's axis, in metres, if there are any.
+    /// Minimum and maximum position along the suspension axis, in metres, if any.
     pub suspension_limits: Option<DistanceLimit>,
-    /// The motor that steers: the wheel's axle about the suspension's axis, right-handed.
-    /// Disabled by default.
+    /// The steering motor, which turns the axle about the suspension axis, right-handed. Disabled by default.
     pub steering: AngularMotor,
-    /// The least and the greatest angle of steering, in radians, if there are any. They are kept while the
-    /// motor is enabled.
+    /// Minimum and maximum steering angle in radians, if any. They apply while the steering motor is enabled.
     pub steering_limits: Option<AngleLimit>,
     /// The motor that spins the wheel. Disabled by default.
     pub motor: AngularMotor,
@@ -92,7 +91,7 @@ impl WheelJoint {
     /// The x axis.
     pub const DEFAULT_AXLE: Vector = Vector::X;
 
-    /// A wheel at the origin of a chassis, sprung along the y axis, that spins about the x axis.
+    /// A wheel at the origin of a chassis. Its spring is along the y axis, and its axle along the x axis.
     pub const fn new(body1: Entity, body2: Entity) -> Self {
         Self {
             body1,
@@ -121,25 +120,25 @@ impl WheelJoint {
         self
     }
 
-    /// Sets the spring. Disabled, the wheel moves freely between the limits.
+    /// Sets the spring. If it is disabled, the wheel moves freely between the limits.
     pub const fn with_suspension(mut self, suspension: LinearMotor) -> Self {
         self.suspension = suspension;
         self
     }
 
-    /// Sets the least and the greatest position along the suspension's axis, in metres.
+    /// Sets the minimum and maximum position along the suspension axis, in metres.
     pub const fn with_suspension_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.suspension_limits = Some(DistanceLimit::new(min, max));
         self
     }
 
-    /// Sets the motor that steers.
+    /// Sets the steering motor.
     pub const fn with_steering(mut self, steering: AngularMotor) -> Self {
         self.steering = steering;
         self
     }
 
-    /// Sets the least and the greatest angle of steering, in radians.
+    /// Sets the minimum and maximum steering angle, in radians.
     pub const fn with_steering_limits(mut self, min: Scalar, max: Scalar) -> Self {
         self.steering_limits = Some(AngleLimit::new(min, max));
         self
@@ -167,7 +166,7 @@ impl JointKind for WheelJoint {
     }
 
     fn set_axes(&self, mut def: JointDef) -> JointDef {
-        // The x axis of the frames is the axle, the y axis that of the suspension.
+        // The x axis of the frames is the axle, the y axis is the suspension axis.
         def.axes[Y] = limited(self.suspension_limits, 0.0);
         def.axes[Y].motor = linear_motor(&self.suspension);
         def.axes[TWIST].motor = angular_motor(&self.motor);

@@ -1,4 +1,4 @@
-//! Write access to a component in queries that may also read it.
+//! Write access to a component in queries that may also read the same component.
 #![expect(unsafe_code, reason = "`WorldQuery` is an unsafe trait; each method is that of `&T` or `&mut T`")]
 
 use bevy_ecs::{
@@ -18,10 +18,9 @@ use core::{
     sync::atomic::{AtomicBool, Ordering::Relaxed},
 };
 
-/// Access to a component: to write it, unless an earlier part of the same query reads it. Then
-/// only to read it.
+/// Write access to a component, or read access if an earlier part of the same query reads the component.
 ///
-/// `&mut T` would make `Query<(&T, Forces)>` panic, and writing while the query gives out `&T` would be
+/// `&mut T` would make `Query<(&T, Forces)>` panic, and writing while the query hands out `&T` would be
 /// undefined behaviour. With `WRITES` false the access is read-only.
 pub struct Access<T, const WRITES: bool>(PhantomData<T>);
 
@@ -39,17 +38,18 @@ impl AccessState {
         Self { id, declared_write: AtomicBool::new(false), declared_read: AtomicBool::new(false) }
     }
 
-    /// Whether every declaration of access for this state was for writing. False before the first one.
+    /// Whether all declarations of access for this state were for writing. False before the first
+    /// declaration.
     fn may_write(&self) -> bool {
         self.declared_write.load(Relaxed) && !self.declared_read.load(Relaxed)
     }
 }
 
-/// A component, to be written if possible.
+/// A component, writable if possible.
 pub enum Accessed<'w, T: Component<Mutability = Mutable>> {
-    /// It can be written.
+    /// The component is writable.
     Mut(Mut<'w, T>),
-    /// The same query reads it.
+    /// The same query reads the component.
     Ref(&'w T),
 }
 
@@ -62,7 +62,7 @@ impl<T: Component<Mutability = Mutable>> Accessed<'_, T> {
         }
     }
 
-    /// The same for a shorter time.
+    /// Reborrows the component for a shorter lifetime.
     pub(super) fn reborrow(&mut self) -> Accessed<'_, T> {
         match self {
             Self::Mut(component) => Accessed::Mut(component.reborrow()),
@@ -75,8 +75,9 @@ type Write<T> = &'static mut T;
 type Read<T> = &'static T;
 
 // SAFETY: `fetch` writes the component only if `may_write`: then each call of `update_component_access` for
-// this state added write access, as `&mut T` does. Otherwise it reads, for which read access was added, or
-// write access, which includes it. Filters and matching are those of `&T` and `&mut T`, which are the same.
+// this state added write access, as `&mut T` does. Otherwise it reads the component, and read access, or
+// write access, which includes it, was added. Filters and matching are the same as for `&T` and `&mut T`,
+// which agree.
 unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery for Access<T, WRITES> {
     type Fetch<'w> = (<Write<T> as WorldQuery>::Fetch<'w>, <Read<T> as WorldQuery>::Fetch<'w>);
     type State = AccessState;
@@ -91,7 +92,7 @@ unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery f
         last_run: Tick,
         this_run: Tick,
     ) -> Self::Fetch<'w> {
-        // SAFETY: as the caller's contract. Neither accesses a component before `fetch`.
+        // SAFETY: the caller's contract is passed on. Neither fetch accesses a component before `fetch`.
         unsafe {
             (
                 <Write<T> as WorldQuery>::init_fetch(world, &state.id, last_run, this_run),
@@ -108,7 +109,7 @@ unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery f
         archetype: &'w Archetype,
         table: &'w Table,
     ) {
-        // SAFETY: as the caller's contract.
+        // SAFETY: the caller's contract is passed on.
         unsafe {
             <Write<T> as WorldQuery>::set_archetype(&mut fetch.0, &state.id, archetype, table);
             <Read<T> as WorldQuery>::set_archetype(&mut fetch.1, &state.id, archetype, table);
@@ -116,7 +117,7 @@ unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery f
     }
 
     unsafe fn set_table<'w>(fetch: &mut Self::Fetch<'w>, state: &Self::State, table: &'w Table) {
-        // SAFETY: as the caller's contract.
+        // SAFETY: the caller's contract is passed on.
         unsafe {
             <Write<T> as WorldQuery>::set_table(&mut fetch.0, &state.id, table);
             <Read<T> as WorldQuery>::set_table(&mut fetch.1, &state.id, table);
@@ -128,7 +129,7 @@ unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> WorldQuery f
             <Write<T> as WorldQuery>::update_component_access(&state.id, access);
             state.declared_write.store(true, Relaxed);
         } else {
-            // Panics if the same query writes it.
+            // Panics if the same query writes the component.
             <Read<T> as WorldQuery>::update_component_access(&state.id, access);
             state.declared_read.store(true, Relaxed);
         }
@@ -164,7 +165,7 @@ unsafe impl<T: Component<Mutability = Mutable>, const WRITES: bool> QueryData fo
         entity: Entity,
         table_row: TableRow,
     ) -> Option<Self::Item<'w, 's>> {
-        // SAFETY: as the caller's contract. Write access was declared if it is used.
+        // SAFETY: the caller's contract is passed on. Write access was declared if it is used.
         unsafe {
             if WRITES && state.may_write() {
                 <Write<T> as QueryData>::fetch(&state.id, &mut fetch.0, entity, table_row).map(Accessed::Mut)

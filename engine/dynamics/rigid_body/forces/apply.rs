@@ -1,5 +1,5 @@
-//! From forces to the solver's rows: bodies with forces wake, and are accelerated in the
-//! substeps of one step.
+//! Applies forces to the solver's rows: bodies with forces wake and are accelerated in the substeps of one
+//! step.
 
 use bevy_app::App;
 use bevy_ecs::{
@@ -45,18 +45,18 @@ use crate::{
     scan::{IN_TABLES, Since},
 };
 
-/// Bodies with forces, between two steps and within one.
+/// Bodies with forces, from detection to the end of the step that applies them.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct ForceList {
-    /// Bodies whose forces were found and are not applied yet.
+    /// Bodies with detected forces that are not applied yet.
     found: Noted,
     /// Bodies that lost a constant force.
     released: Noted,
-    /// Bodies whose forces act in this step, with the accelerations that were read.
+    /// Bodies whose forces act in this step, with the accelerations read from them.
     applied: Vec<Applied>,
-    /// Ids of bodies whose constant forces were added together with others.
+    /// Ids of bodies whose constant forces were already added.
     done: BitSet,
-    /// Tick of the last scan for forces in world axes, and for those in the frame of bodies.
+    /// Ticks of the last scans for forces in world axes and for forces in the frame of bodies.
     scanned: [Tick; 2],
 }
 
@@ -69,14 +69,14 @@ struct Applied {
     local: AccumulatedLocalAcceleration,
 }
 
-/// Adds the list, and the observer of constant forces that end.
+/// Adds the list, and the observer of removed constant forces.
 pub(crate) fn watch(app: &mut App) {
     app.init_resource::<ForceList>().add_observer(
         |on: On<Remove, Constants>, mut list: ResMut<ForceList>| _ = list.released.note(on.entity),
     );
 }
 
-/// The accumulated forces of a body, and a change of velocity that waits.
+/// The accumulated forces of a body, and a pending change of velocity.
 type Sums = (
     Entity,
     Ref<'static, VelocityIntegrationData>,
@@ -100,7 +100,7 @@ pub(crate) struct Pushed<'w, 's> {
 }
 
 impl Pushed<'_, '_> {
-    /// Writes the velocity of a body, if a change waits. Returns whether it did.
+    /// Writes the velocity of a body if a change is pending. Returns whether it was written.
     fn write(&mut self, entity: Entity) -> bool {
         let Ok((.., mut pushed)) = self.sums.get_mut(entity) else { return false };
         let Ok((mut linear, mut angular)) = self.velocities.get_mut(entity) else { return false };
@@ -138,7 +138,7 @@ pub(crate) fn follow_forces(
     }
     for entity in found.entities() {
         pushed.write(entity);
-        // A force that is to wake an awake body has reset its `SleepTimer`.
+        // A force that wakes the body has reset its `SleepTimer`.
         if let Ok((_, data, local, _)) = pushed.sums.get(entity)
             && !is_idle(&data, &local)
             && let Ok(id) = ids.get(entity)
@@ -151,7 +151,8 @@ pub(crate) fn follow_forces(
     if changed.is_empty() && released.is_empty() {
         return;
     }
-    // Bodies that were put to sleep in this step fell asleep with this force: a level may be spawned asleep.
+    // Bodies that were put to sleep in this step fell asleep with this force, because a level may be spawned
+    // asleep.
     let flipped = tables.bodies.table.flipped_set();
     for id in changed.iter().filter(|id| !flipped.contains(id.0)) {
         wake(id.0, &mut tables);
@@ -169,7 +170,7 @@ fn wake(id: u32, tables: &mut Tables) {
     }
 }
 
-/// What the acceleration of a body depends on.
+/// The properties of a body that determine its acceleration.
 #[derive(QueryData)]
 pub(crate) struct ForceInput {
     id: &'static BodyId,
@@ -192,7 +193,7 @@ pub(crate) struct ForceInput {
 }
 
 impl ForceInputItem<'_, '_> {
-    /// The acceleration of the body by accumulated and constant forces.
+    /// The acceleration of the body from accumulated and constant forces.
     fn thrust(&self) -> Thrust {
         let response = Response::new(self.mass, self.inertia, self.rotation, self.locks);
         let linear = self.linear.map_or(Vector::ZERO, |a| response.free_linear(a.0));
@@ -246,7 +247,7 @@ pub(crate) fn apply_forces(
             continue;
         }
         if row == 0 && body.body.is_dynamic() && !body.is_disabled {
-            // It was spawned or pushed within the step, and enters or wakes in the next one.
+            // The body was spawned or pushed within the step. It enters or wakes in the next step.
             found.note(entity);
             continue;
         }
@@ -273,12 +274,12 @@ pub(crate) fn apply_forces(
     diagnostics.update_velocity_increments += start.elapsed();
 }
 
-/// Adds the forces on a body to its row, if forces move it.
+/// Adds the forces on a body to its row, if the body responds to forces.
 fn thrust(entity: Entity, body: &ForceInputItem, pushed: &Pushed, bodies: &Bodies, rows: &mut BodyRows) {
     let row = bodies.table.row(body.id.0);
     let is_dynamic = row >= rows.first_dynamic() && (row as usize) < rows.rows.len();
     let moves = is_dynamic && !body.is_disabled && !body.integrates;
-    // A body whose velocity is not finite is disabled at the end of the stage.
+    // A body with a velocity that is not finite is disabled at the end of the stage.
     if !moves || pushed.velocity(entity).is_none() {
         return;
     }
@@ -290,7 +291,7 @@ fn thrust(entity: Entity, body: &ForceInputItem, pushed: &Pushed, bodies: &Bodie
     }
 }
 
-/// Finds forces on awake bodies, also those that were applied within this step.
+/// Finds forces on awake bodies, including forces that were applied within this step.
 fn find(pushed: &mut Pushed, bodies: &Bodies, list: &mut ForceList, system: SystemChangeTick) {
     let ForceList { found, scanned, .. } = list;
     if is_minority(bodies.listed.len(), [pushed.sums.iter().size_hint()]) {
@@ -315,7 +316,8 @@ fn find(pushed: &mut Pushed, bodies: &Bodies, list: &mut ForceList, system: Syst
     }
 }
 
-/// Sets the accelerations of this step to zero. What was added since they were read is for the next step.
+/// Sets the accelerations of this step to zero. Accelerations that were added after they were read remain for
+/// the next step.
 pub(crate) fn clear_forces(
     mut sums: Query<(&mut VelocityIntegrationData, &mut AccumulatedLocalAcceleration)>,
     mut list: ResMut<ForceList>,

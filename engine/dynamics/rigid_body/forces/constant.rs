@@ -1,4 +1,4 @@
-//! Forces and accelerations that act as long as their component is there.
+//! Forces and accelerations that act as long as the entity has their component.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -11,10 +11,10 @@ use crate::{
     type_path::type_path,
 };
 
-/// A force on a dynamic body at its centre of mass, in N along the world's axes, in every step.
+/// A constant force on a dynamic body at its centre of mass, in N along the world's axes.
 ///
-/// Inserting, changing or removing it wakes the body. An unchanged force lets the body fall asleep
-/// where it rests.
+/// Inserting, changing or removing the component wakes the body. A body with an unchanged force may fall
+/// asleep.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -35,7 +35,7 @@ pub struct ConstantForce(pub Vector);
 
 type_path!(ConstantForce, "dynamics::rigid_body::forces");
 
-/// A torque on a dynamic body, in N·m about the world's axes, in every step. See [`ConstantForce`].
+/// A constant torque on a dynamic body, in N·m about the world's axes. See [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -47,8 +47,8 @@ pub struct ConstantTorque(pub AngularVector);
 
 type_path!(ConstantTorque, "dynamics::rigid_body::forces");
 
-/// A force on a dynamic body at its centre of mass, in N along the body's own axes, in every step. It turns
-/// with the body. See [`ConstantForce`].
+/// A constant force on a dynamic body at its centre of mass, in N along the body's own axes. It rotates with
+/// the body. See [`ConstantForce`].
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -69,7 +69,7 @@ pub struct ConstantLocalForce(pub Vector);
 
 type_path!(ConstantLocalForce, "dynamics::rigid_body::forces");
 
-/// An acceleration of a dynamic body, in m/s² along the world's axes, in every step, whatever the mass. See
+/// A constant acceleration of a dynamic body, in m/s² along the world's axes, independent of the mass. See
 /// [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
@@ -82,7 +82,7 @@ pub struct ConstantLinearAcceleration(pub Vector);
 
 type_path!(ConstantLinearAcceleration, "dynamics::rigid_body::forces");
 
-/// An angular acceleration of a dynamic body, in rad/s² about the world's axes, in every step, whatever the
+/// A constant angular acceleration of a dynamic body, in rad/s² about the world's axes, independent of the
 /// inertia. See [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
@@ -95,8 +95,8 @@ pub struct ConstantAngularAcceleration(pub AngularVector);
 
 type_path!(ConstantAngularAcceleration, "dynamics::rigid_body::forces");
 
-/// An acceleration of a dynamic body, in m/s² along the body's own axes, in every step, whatever the mass. It
-/// turns with the body. See [`ConstantForce`].
+/// A constant acceleration of a dynamic body, in m/s² along the body's own axes, independent of the mass. It
+/// rotates with the body. See [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(

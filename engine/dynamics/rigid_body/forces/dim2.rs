@@ -1,5 +1,5 @@
-//! Forces of 2D. `dim3.rs` exports the same names, and the torques in the body's frame, which 2D does not
-//! need: a torque is the same in all frames of the plane.
+//! Forces of 2D. `dim3.rs` exports the same names, and additionally torques in the body's frame. 2D does not
+//! need these, because a torque is the same in all frames of the plane.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;
@@ -16,10 +16,10 @@ use crate::{
     physics_transform::Rotation,
 };
 
-/// Acceleration in a body's own frame, summed up for the next step, in which it turns with the body.
-/// [`Forces`](super::Forces) adds to it. It is zero again at the end of the step.
+/// Acceleration in a body's own frame, accumulated for the next step. It rotates with the body during that
+/// step. [`Forces`](super::Forces) adds to it, and the engine sets it to zero at the end of the step.
 ///
-/// An app may write it by hand. That alone does not wake a sleeping body.
+/// An app may write it directly. That alone does not wake a sleeping body.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -52,27 +52,28 @@ impl AccumulatedLocalAcceleration {
     pub(super) fn subtract_angular(&mut self, _other: &Self) {}
 }
 
-/// Declares the methods of `WriteRigidBodyForces` for torques in the body's frame: none in 2D.
+/// Declares the methods of `WriteRigidBodyForces` for torques in the body's frame. 2D has none.
 macro_rules! local_torque_methods {
     () => {};
 }
 
 pub(super) use local_torque_methods;
 
-/// Constant torques in the body's frame: none in 2D. The entity stands in for them, as every body has one.
+/// Constant torques in the body's frame. 2D has none, and `Entity` is the placeholder, because every body has
+/// one.
 pub(super) type LocalTorques = Entity;
 
-/// Torque and angular acceleration in the body's frame.
+/// The torque and angular acceleration in the body's frame.
 pub(super) fn local_torques(_torques: &Entity) -> (AngularVector, AngularVector) {
     (0.0, 0.0)
 }
 
-/// A torque in world axes.
+/// Converts a torque in the body's frame to world axes.
 pub(super) fn to_world(_rotation: &Rotation, torque: AngularVector) -> AngularVector {
     torque
 }
 
-/// A torque in the body's frame.
+/// Converts a torque in world axes to the body's frame.
 pub(super) fn to_body(_rotation: &Rotation, torque: AngularVector) -> AngularVector {
     torque
 }
@@ -112,11 +113,11 @@ pub(crate) fn register_types(app: &mut App) {
     app.register_type::<AccumulatedLocalAcceleration>();
 }
 
-/// Constructors from components.
+/// Defines constructors from components.
 macro_rules! from_xy {
     ($($type:ident),+) => {$(
         impl $type {
-            /// The same as from a [`Vector`], by components.
+            /// Like the constructor from a [`Vector`], with components.
             pub fn new(x: Scalar, y: Scalar) -> Self {
                 Self(Vector::new(x, y))
             }

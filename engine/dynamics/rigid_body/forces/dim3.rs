@@ -1,4 +1,4 @@
-//! Forces of 3D: what `dim2.rs` exports, and torques in the body's frame.
+//! Forces of 3D: the names of `dim2.rs`, and torques in the body's frame.
 
 use bevy_app::App;
 use bevy_derive::{Deref, DerefMut};
@@ -17,10 +17,10 @@ use crate::{
     physics_transform::Rotation,
 };
 
-/// Acceleration in a body's own frame, summed up for the next step, in which it turns with the body.
-/// [`Forces`](super::Forces) adds to it. It is zero again at the end of the step.
+/// Acceleration in a body's own frame, accumulated for the next step. It rotates with the body during that
+/// step. [`Forces`](super::Forces) adds to it, and the engine sets it to zero at the end of the step.
 ///
-/// An app may write it by hand. That alone does not wake a sleeping body.
+/// An app may write it directly. That alone does not wake a sleeping body.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -53,13 +53,13 @@ impl AccumulatedLocalAcceleration {
         self.angular = Vector::ZERO;
     }
 
-    /// Subtracts an angular acceleration.
+    /// Subtracts the angular acceleration of `other`.
     pub(super) fn subtract_angular(&mut self, other: &Self) {
         self.angular = self.angular.less(other.angular);
     }
 }
 
-/// A torque on a dynamic body, in N·m about the body's own axes, in every step. It turns with the body. See
+/// A constant torque on a dynamic body, in N·m about the body's own axes. It rotates with the body. See
 /// [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
@@ -72,8 +72,8 @@ pub struct ConstantLocalTorque(pub AngularVector);
 
 crate::type_path::type_path!(ConstantLocalTorque, "dynamics::rigid_body::forces");
 
-/// An angular acceleration of a dynamic body, in rad/s² about the body's own axes, in every step, whatever
-/// the inertia. It turns with the body. See [`ConstantForce`].
+/// A constant angular acceleration of a dynamic body, in rad/s² about the body's own axes, independent of the
+/// inertia. It rotates with the body. See [`ConstantForce`].
 #[derive(Component, Reflect, Clone, Debug, Default, Deref, DerefMut, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -88,22 +88,22 @@ crate::type_path::type_path!(ConstantLocalAngularAcceleration, "dynamics::rigid_
 /// Declares the methods of `WriteRigidBodyForces` for torques in the body's frame.
 macro_rules! local_torque_methods {
     () => {
-        /// Applies a torque about the body's own axes, in N·m, that turns with the body during the step.
+        /// Applies a torque about the body's own axes, in N·m. It rotates with the body during the step.
         fn apply_local_torque(&mut self, torque: AngularVector) {
             let seen = self.seen();
             let acceleration = seen.rotation.inverse() * seen.angular_response(seen.rotation * torque);
             accumulate(self, "torque", |to| &mut to.local.angular, acceleration);
         }
 
-        /// Applies an angular impulse about the body's own axes, in N·m·s: it changes the angular
-        /// velocity at once.
+        /// Applies an angular impulse about the body's own axes, in N·m·s. The angular velocity changes at
+        /// once.
         fn apply_local_angular_impulse(&mut self, impulse: AngularVector) {
             let impulse = self.seen().rotation * impulse;
             self.apply_angular_impulse(impulse);
         }
 
-        /// Applies an angular acceleration about the body's own axes, in rad/s², that turns with the body
-        /// during the step, whatever the inertia.
+        /// Applies an angular acceleration about the body's own axes, in rad/s², independent of the inertia.
+        /// It rotates with the body during the step.
         fn apply_local_angular_acceleration(&mut self, acceleration: AngularVector) {
             accumulate(self, "angular acceleration", |to| &mut to.local.angular, acceleration);
         }
@@ -116,19 +116,19 @@ pub(super) use local_torque_methods;
 pub(super) type LocalTorques =
     (Option<&'static ConstantLocalTorque>, Option<&'static ConstantLocalAngularAcceleration>);
 
-/// Torque and angular acceleration in the body's frame.
+/// The torque and angular acceleration in the body's frame.
 pub(super) fn local_torques(
     (torque, acceleration): &(Option<&ConstantLocalTorque>, Option<&ConstantLocalAngularAcceleration>),
 ) -> (AngularVector, AngularVector) {
     (torque.map_or(Vector::ZERO, |torque| torque.0), acceleration.map_or(Vector::ZERO, |turn| turn.0))
 }
 
-/// A torque in world axes.
+/// Converts a torque in the body's frame to world axes.
 pub(super) fn to_world(rotation: &Rotation, torque: AngularVector) -> AngularVector {
     rotation * torque
 }
 
-/// A torque in the body's frame.
+/// Converts a torque in world axes to the body's frame.
 pub(super) fn to_body(rotation: &Rotation, torque: AngularVector) -> AngularVector {
     rotation.inverse() * torque
 }
@@ -176,11 +176,11 @@ pub(crate) fn register_types(app: &mut App) {
         .register_type::<ConstantLocalAngularAcceleration>();
 }
 
-/// Constructors from components.
+/// Defines constructors from components.
 macro_rules! from_xyz {
     ($($type:ident),+) => {$(
         impl $type {
-            /// The same as from a [`Vector`], by components.
+            /// Like the constructor from a [`Vector`], with components.
             pub fn new(x: Scalar, y: Scalar, z: Scalar) -> Self {
                 Self(Vector::new(x, y, z))
             }

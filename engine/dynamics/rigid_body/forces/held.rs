@@ -1,5 +1,5 @@
-//! Forces that were applied in ticks without a step, as while physics is paused. Those of the last such tick
-//! act in the next step, unless others are applied in the tick of that step.
+//! Forces that were applied in ticks without a step, for example while physics is paused. Forces of the last
+//! such tick act in the next step, unless other forces are applied in the tick of that step.
 
 use bevy_ecs::{prelude::*, system::SystemChangeTick};
 
@@ -11,15 +11,15 @@ use crate::{
     scan::{IN_TABLES, Since},
 };
 
-/// The accelerations of bodies in the last tick without a step in which any were applied: linear and angular
-/// ones in world axes, and those in the frame of the body.
+/// The accelerations of bodies in the last tick without a step that had any: linear and angular accelerations
+/// in world axes, and accelerations in the frame of the body.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct HeldForces(Noted<(Vector, AngularVector, AccumulatedLocalAcceleration)>);
 
-/// The accelerations of bodies that changed.
+/// The accelerations of bodies.
 type Sums = (Entity, &'static mut VelocityIntegrationData, &'static mut AccumulatedLocalAcceleration);
 
-/// Takes the accelerations of a tick without a step. Otherwise those of many ticks would add up.
+/// Takes the accelerations of a tick without a step. Otherwise the accelerations of many ticks would add up.
 pub(crate) fn hold_forces(
     mut sums: Query<Sums, With<BodyId>>,
     mut held: ResMut<HeldForces>,
@@ -41,7 +41,7 @@ pub(crate) fn hold_forces(
     }
 }
 
-/// Gives the accelerations back to bodies that have got none since.
+/// Returns the accelerations to bodies that got no new ones since.
 pub(crate) fn release_forces(mut sums: Query<Sums>, mut held: ResMut<HeldForces>) {
     for (entity, (linear, angular, turning)) in held.0.drain() {
         if let Ok((_, mut data, mut local)) = sums.get_mut(entity)

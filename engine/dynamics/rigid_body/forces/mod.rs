@@ -8,13 +8,13 @@
 //!
 //! # For one step
 //!
-//! [`Forces`] is query data with a method for each of them. Forces and accelerations add up until the next
-//! step, act during the whole of that step, in each of its substeps, and end with it: apply a lasting force
-//! in a schedule that runs once per step, for instance `FixedUpdate`. What is applied twice before a step
-//! acts twice as much. Ticks without a step, as while physics is paused, do not add up: the last of them
-//! counts, and only if nothing is applied in the tick of the next step. What is applied within a step, in
-//! [`PhysicsSchedule`](crate::schedule::PhysicsSchedule), counts in that step until the solver begins, and in
-//! the next one afterwards. Impulses change the velocity at once.
+//! [`Forces`] is query data with a method for each of these quantities. Forces and accelerations add up until
+//! the next step, act in each substep of that step, and end with it. Apply a lasting force in a schedule that
+//! runs once per step, for instance `FixedUpdate`. A force that is applied twice before a step acts twice as
+//! much. Ticks without a step, for example while physics is paused, do not add up: only the last of them
+//! counts, and only if no force is applied in the tick of the next step. Forces applied within a step, in
+//! [`PhysicsSchedule`](crate::schedule::PhysicsSchedule), act in that step if they come before the solver,
+//! otherwise in the next step. Impulses change the velocity at once.
 //!
 //! ```
 //! # use avian::{math::Vector, prelude::*};
@@ -34,22 +34,23 @@
 //! app.add_systems(FixedUpdate, fly);
 //! ```
 //!
-//! # As long as a component is there
+//! # Constant forces
 //!
 //! [`ConstantForce`], [`ConstantTorque`], [`ConstantLocalForce`], [`ConstantLinearAcceleration`],
 //! [`ConstantAngularAcceleration`], [`ConstantLocalLinearAcceleration`], and in 3D `ConstantLocalTorque` and
-//! `ConstantLocalAngularAcceleration`, act in every step. Inserting, changing or removing one wakes the body.
+//! `ConstantLocalAngularAcceleration`, act in every step. Inserting, changing or removing one of them wakes
+//! the body.
 //!
 //! # Axes and points
 //!
-//! *Local* ones are along the axes of the body and turn with it in every substep. All others are along
-//! the axes of the world. Forces act at the centre of mass, or at a point of the world, where they also
-//! give a torque.
+//! *Local* quantities are along the axes of the body and rotate with it in every substep. All others are
+//! along the axes of the world. Forces act at the centre of mass, or at a point of the world, where they also
+//! cause a torque.
 //!
 //! # Which bodies respond
 //!
-//! Dynamic ones, by their mass and inertia. Locked axes act as an infinite mass or inertia. Static, kinematic
-//! and disabled bodies, and bodies with
+//! Only dynamic bodies respond, according to their mass and inertia. Locked axes act as an infinite mass or
+//! inertia. Static, kinematic and disabled bodies, and bodies with
 //! [`CustomVelocityIntegration`](crate::dynamics::integrator::CustomVelocityIntegration), are not
 //! accelerated. A value that is not finite is ignored, with one warning.
 

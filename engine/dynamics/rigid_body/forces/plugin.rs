@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// Accelerates bodies by [`Forces`](super::Forces) and constant forces. Part of
-/// [`PhysicsPlugins`](crate::PhysicsPlugins). Without it forces have no effect; impulses still have.
+/// [`PhysicsPlugins`](crate::PhysicsPlugins). Without this plugin forces have no effect, but impulses do.
 pub struct ForcePlugin;
 
 impl Plugin for ForcePlugin {

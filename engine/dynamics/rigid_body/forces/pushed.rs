@@ -1,12 +1,12 @@
-//! Changes of velocity that wait for the next step.
+//! Changes of velocity that are pending until the next step.
 
 use bevy_ecs::prelude::*;
 use core::ops::{Add, Sub};
 
 use crate::math::{AngularVector, Scalar, Vector};
 
-/// Changes of a body's velocity by [`Forces`](super::Forces) in a query that also reads the velocity, and so
-/// cannot be written to it at once. The next step applies them.
+/// Velocity changes by [`Forces`](super::Forces) in a query that also reads the velocity and therefore cannot
+/// write it at once. The next step applies them.
 #[derive(Component, Clone, Debug, Default)]
 pub struct PushedVelocity {
     pub(super) linear: Push<Vector>,
@@ -14,7 +14,7 @@ pub struct PushedVelocity {
 }
 
 impl PushedVelocity {
-    /// Whether a change waits.
+    /// Whether a change is pending.
     pub(super) fn is_set(&self) -> bool {
         self.linear.0.is_some() || self.angular.0.is_some()
     }
@@ -25,7 +25,8 @@ impl PushedVelocity {
 pub(super) struct Push<V>(Option<[V; 2]>);
 
 impl<V: Quantity> Push<V> {
-    /// The changed velocity. What the app wrote since adds to the change.
+    /// The changed velocity, given the component's current value. If the app wrote the component since, both
+    /// changes add up.
     pub(super) fn of(&self, current: V) -> V {
         match self.0 {
             Some([from, to]) if current == from => to,
@@ -34,7 +35,7 @@ impl<V: Quantity> Push<V> {
         }
     }
 
-    /// The changed velocity, to be written.
+    /// Starts or continues a change. Returns the changed velocity, to be written.
     pub(super) fn start(&mut self, current: V) -> &mut V {
         let to = self.of(current);
         &mut self.0.insert([current, to])[1]
@@ -49,10 +50,10 @@ impl<V: Quantity> Push<V> {
 
 /// A number or vector.
 pub trait Quantity: Copy + Default + PartialEq + Add<Output = Self> + Sub<Output = Self> {
-    /// Whether all numbers are finite.
+    /// Whether all components are finite.
     fn is_number(self) -> bool;
 
-    /// The difference. Zero if it is not finite.
+    /// The difference, or zero if it is not finite.
     fn less(self, other: Self) -> Self {
         let rest = self - other;
         if self == other || !rest.is_number() { Self::default() } else { rest }

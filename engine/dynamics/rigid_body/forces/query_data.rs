@@ -26,8 +26,8 @@ use crate::{
 
 /// Query data that applies forces, torques, impulses and accelerations to bodies.
 ///
-/// The methods are those of [`ReadRigidBodyForces`] and [`WriteRigidBodyForces`], which are in the prelude.
-/// See the [module](super) for what acts when.
+/// The methods belong to [`ReadRigidBodyForces`] and [`WriteRigidBodyForces`], which are in the prelude. The
+/// [module](super) explains when each quantity acts.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -49,9 +49,9 @@ use crate::{
 ///
 /// # Sleeping bodies
 ///
-/// A force, impulse or acceleration that is not zero wakes a sleeping body in the next step, also if physics
-/// is paused when it is applied. Applied through [`non_waking`](ForcesItem::non_waking), it has no effect on
-/// a sleeping body, and a force does not keep an awake one from falling asleep.
+/// A nonzero force, impulse or acceleration wakes a sleeping body in the next step, even if physics is paused
+/// when it is applied. If it is applied through [`non_waking`](ForcesItem::non_waking), it has no effect on a
+/// sleeping body, and a force does not keep an awake body from falling asleep.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -65,10 +65,10 @@ use crate::{
 ///
 /// # Reading the velocity in the same query
 ///
-/// `Query<(&LinearVelocity, Forces)>` works, if the velocity stands before `Forces`. Impulses cannot write
-/// the velocity then, while the query gives it out. They are seen by all methods of `Forces` at once, and are
-/// written to the velocity at the start of the next step.
-/// [`linear_velocity`](ReadRigidBodyForces::linear_velocity) makes the extra query part unnecessary.
+/// `Query<(&LinearVelocity, Forces)>` works if the velocity comes before `Forces`. Impulses then cannot write
+/// the velocity while the query hands it out. All methods of `Forces` see the impulses at once, and the start
+/// of the next step writes them to the velocity. [`linear_velocity`](ReadRigidBodyForces::linear_velocity)
+/// makes the extra query part unnecessary.
 ///
 /// ```
 /// # use avian::{math::Vector, prelude::*};
@@ -109,7 +109,7 @@ pub struct NonWakingForcesItem<'w, 's>(
 );
 
 impl ForcesItem<'_, '_> {
-    /// The same forces for a shorter time, to be passed on by value.
+    /// Reborrows the forces for a shorter lifetime, to be passed on by value.
     pub fn reborrow(&mut self) -> ForcesItem<'_, '_> {
         ForcesItem {
             entity: self.entity,
@@ -135,7 +135,7 @@ impl ForcesItem<'_, '_> {
         NonWakingForcesItem(self.reborrow())
     }
 
-    /// Whether something is to be applied. Warns of a value that is not finite.
+    /// Whether the quantity is applied. Warns of a value that is not finite.
     fn admits(&self, what: &str, is_number: bool) -> bool {
         if !is_number {
             warn_of(what, self.entity);
@@ -143,14 +143,15 @@ impl ForcesItem<'_, '_> {
         is_number && self.body.is_dynamic()
     }
 
-    /// Starts the time until the body falls asleep again.
+    /// Restarts the time until the body falls asleep.
     fn stay_awake(&mut self) {
         if let Some(timer) = &mut self.sleep_timer {
             timer.set_if_neq(SleepTimer(0.0));
         }
     }
 
-    /// The linear velocity, to be written. A quiet change is found when the body is awake, and wakes nothing.
+    /// The linear velocity, to be written. A quiet change is detected only while the body is awake, and wakes
+    /// nothing.
     fn linear_mut(&mut self, quiet: bool) -> &mut Vector {
         match &mut self.linear_velocity {
             Accessed::Mut(velocity) => {
@@ -198,7 +199,7 @@ fn warn_of(what: &str, entity: Entity) {
     warn_once!("the {what} applied to {entity} is not finite or too large, and is ignored");
 }
 
-/// A body's state, as forces see it.
+/// The state of a body that forces depend on.
 pub struct Seen<'a> {
     pub(super) position: &'a Position,
     pub(super) rotation: &'a Rotation,
@@ -217,17 +218,17 @@ impl Seen<'_> {
         Response::new(self.mass, self.inertia, self.rotation, self.locks)
     }
 
-    /// The angular acceleration by a torque.
+    /// The angular acceleration caused by a torque.
     pub(super) fn angular_response(&self, torque: AngularVector) -> AngularVector {
         self.response().angular(torque)
     }
 
-    /// From the centre of mass to a point of the world.
+    /// The vector from the centre of mass to a point of the world.
     fn arm(&self, world_point: Vector) -> Vector {
         world_point - (self.position.0 + self.rotation * self.center.0)
     }
 
-    /// The torque of a force at a point of the world.
+    /// The torque of a force that acts at a point of the world.
     fn torque(&self, force: Vector, world_point: Vector) -> AngularVector {
         let arm = vector_to_kernel(self.arm(world_point));
         angular_from_kernel(arm.cross(vector_to_kernel(force)))
@@ -240,15 +241,15 @@ pub struct Sums<'a> {
     pub(super) local: &'a mut AccumulatedLocalAcceleration,
 }
 
-/// What reading methods need.
+/// Implementation details of the reading methods.
 pub trait ReadRigidBodyForcesInternal {
     /// The state of the body.
     fn seen(&self) -> Seen<'_>;
 }
 
-/// What writing methods need.
+/// Implementation details of the writing methods.
 pub trait WriteRigidBodyForcesInternal: ReadRigidBodyForcesInternal {
-    /// Whether something is to be applied, and wakes the body for it.
+    /// Whether the quantity is applied. Wakes the body in that case.
     fn admit(&mut self, what: &str, is_number: bool) -> bool;
 
     /// The sums of accelerations, to be written.
@@ -260,7 +261,7 @@ pub trait WriteRigidBodyForcesInternal: ReadRigidBodyForcesInternal {
     /// The angular velocity, to be written.
     fn angular(&mut self) -> &mut AngularVector;
 
-    /// Reports a value that cannot be applied.
+    /// Warns that a value cannot be applied.
     fn warn(&self, what: &str);
 }
 
@@ -354,7 +355,7 @@ impl WriteRigidBodyForcesInternal for NonWakingForcesItem<'_, '_> {
     }
 }
 
-/// Adds an acceleration to one of the sums.
+/// Adds an acceleration to a sum.
 fn accumulate<V: Quantity>(
     forces: &mut (impl WriteRigidBodyForcesInternal + ?Sized),
     what: &str,
@@ -373,7 +374,7 @@ fn accumulate<V: Quantity>(
     }
 }
 
-/// Reads what forces depend on. Implemented by the items of [`Forces`].
+/// Reads the state that forces depend on. Implemented by the items of [`Forces`].
 pub trait ReadRigidBodyForces: ReadRigidBodyForcesInternal {
     /// The position of the body.
     fn position(&self) -> &Position {
@@ -385,31 +386,31 @@ pub trait ReadRigidBodyForces: ReadRigidBodyForcesInternal {
         self.seen().rotation
     }
 
-    /// The velocity of the centre of mass in m/s, with all impulses that were applied.
+    /// The velocity of the centre of mass in m/s, including all applied impulses.
     fn linear_velocity(&self) -> Vector {
         self.seen().linear_velocity
     }
 
-    /// The angular velocity in rad/s, with all impulses that were applied.
+    /// The angular velocity in rad/s, including all applied impulses.
     fn angular_velocity(&self) -> AngularVector {
         self.seen().angular_velocity
     }
 
-    /// The linear acceleration in world axes that was applied for the next step, in m/s². Gravity and
-    /// constant forces are not part of it.
+    /// The linear acceleration in world axes that was applied for the next step, in m/s². It does not include
+    /// gravity and constant forces.
     fn accumulated_linear_acceleration(&self) -> Vector {
         let seen = self.seen();
         seen.data.linear_increment + seen.rotation * seen.local.linear
     }
 
-    /// The angular acceleration in world axes that was applied for the next step, in rad/s². Constant torques
-    /// are not part of it.
+    /// The angular acceleration in world axes that was applied for the next step, in rad/s². It does not
+    /// include constant torques.
     fn accumulated_angular_acceleration(&self) -> AngularVector {
         let seen = self.seen();
         seen.data.angular_increment + seen.local.world_angular(seen.rotation)
     }
 
-    /// The velocity of a point of the body in m/s, where the point is given in world space.
+    /// The velocity in m/s of a point of the body, given in world space.
     fn velocity_at_point(&self, world_point: Vector) -> Vector {
         let seen = self.seen();
         let spin = angular_to_kernel(seen.angular_velocity);
@@ -430,15 +431,15 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
     }
 
     /// Applies a force in N at a point of the world, along the world's axes. Off the centre of mass it also
-    /// gives a torque.
+    /// causes a torque.
     fn apply_force_at_point(&mut self, force: Vector, world_point: Vector) {
         let torque = self.seen().torque(force, world_point);
         self.apply_force(force);
         self.apply_torque(torque);
     }
 
-    /// Applies a force in N at the centre of mass, along the body's own axes. It turns with the body
-    /// during the step.
+    /// Applies a force in N at the centre of mass, along the body's own axes. It rotates with the body during
+    /// the step.
     fn apply_local_force(&mut self, force: Vector) {
         let acceleration = force * self.seen().mass.inverse();
         accumulate(self, "force", |to| &mut to.local.linear, acceleration);
@@ -452,8 +453,7 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
 
     local_torque_methods!();
 
-    /// Applies an impulse in N·s at the centre of mass, along the world's axes: it changes the
-    /// velocity at once.
+    /// Applies an impulse in N·s at the centre of mass, along the world's axes. The velocity changes at once.
     fn apply_linear_impulse(&mut self, impulse: Vector) {
         let seen = self.seen();
         let change = seen.response().linear(impulse);
@@ -477,7 +477,7 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
         self.apply_linear_impulse(impulse);
     }
 
-    /// Applies an angular impulse in N·m·s about the world's axes: it changes the angular velocity at once.
+    /// Applies an angular impulse in N·m·s about the world's axes. The angular velocity changes at once.
     fn apply_angular_impulse(&mut self, impulse: AngularVector) {
         let seen = self.seen();
         let change = seen.angular_response(impulse);
@@ -487,13 +487,13 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
         }
     }
 
-    /// Applies an acceleration in m/s² along the world's axes, whatever the mass.
+    /// Applies an acceleration in m/s² along the world's axes, independent of the mass.
     fn apply_linear_acceleration(&mut self, acceleration: Vector) {
         let acceleration = self.seen().response().free_linear(acceleration);
         accumulate(self, "acceleration", |to| &mut to.data.linear_increment, acceleration);
     }
 
-    /// Applies an acceleration in m/s² at a point of the world: as
+    /// Applies an acceleration in m/s² at a point of the world. It is equal to
     /// [`apply_force_at_point`](Self::apply_force_at_point) with the force that gives the centre of mass this
     /// acceleration.
     fn apply_linear_acceleration_at_point(&mut self, acceleration: Vector, world_point: Vector) {
@@ -503,36 +503,37 @@ pub trait WriteRigidBodyForces: ReadRigidBodyForces + WriteRigidBodyForcesIntern
         self.apply_torque(torque);
     }
 
-    /// Applies an acceleration in m/s² along the body's own axes, whatever the mass. It turns with the body
-    /// during the step.
+    /// Applies an acceleration in m/s² along the body's own axes, independent of the mass. It rotates with
+    /// the body during the step.
     fn apply_local_linear_acceleration(&mut self, acceleration: Vector) {
         accumulate(self, "acceleration", |to| &mut to.local.linear, acceleration);
     }
 
-    /// Applies an angular acceleration in rad/s² about the world's axes, whatever the inertia.
+    /// Applies an angular acceleration in rad/s² about the world's axes, independent of the inertia.
     fn apply_angular_acceleration(&mut self, acceleration: AngularVector) {
         let acceleration = self.seen().response().free_angular(acceleration);
         accumulate(self, "angular acceleration", |to| &mut to.data.angular_increment, acceleration);
     }
 
-    /// The velocity of the centre of mass in m/s, to be written. A change wakes the body, if these forces do.
+    /// The velocity of the centre of mass in m/s, to be written. A change wakes the body if these forces wake
+    /// bodies.
     fn linear_velocity_mut(&mut self) -> &mut Vector {
         self.linear()
     }
 
-    /// The angular velocity in rad/s, to be written. A change wakes the body, if these forces do.
+    /// The angular velocity in rad/s, to be written. A change wakes the body if these forces wake bodies.
     fn angular_velocity_mut(&mut self) -> &mut AngularVector {
         self.angular()
     }
 
-    /// Takes back all forces and linear accelerations that were applied for the next step.
+    /// Removes all forces and linear accelerations that were applied for the next step.
     fn reset_accumulated_linear_acceleration(&mut self) {
         let sums = self.sums();
         sums.data.linear_increment = Vector::ZERO;
         sums.local.linear = Vector::ZERO;
     }
 
-    /// Takes back all torques and angular accelerations that were applied for the next step.
+    /// Removes all torques and angular accelerations that were applied for the next step.
     fn reset_accumulated_angular_acceleration(&mut self) {
         let sums = self.sums();
         sums.data.angular_increment = AngularVector::default();

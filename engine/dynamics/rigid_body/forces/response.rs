@@ -1,4 +1,4 @@
-//! How a body responds to forces and torques: by its mass, inertia and locked axes.
+//! The response of a body to forces and torques, by its mass, inertia and locked axes.
 
 use kernel::math::{AxisLocks, InvInertia};
 
@@ -35,7 +35,7 @@ impl Response {
         Self { inverse_mass: mass.inverse(), inverse_inertia, locks }
     }
 
-    /// The acceleration by a force, or the change of velocity by an impulse, at the centre of mass.
+    /// The acceleration of the centre of mass by a force, or its change of velocity by an impulse.
     pub(super) fn linear(&self, force: Vector) -> Vector {
         self.free_linear(force * self.inverse_mass)
     }
@@ -45,7 +45,7 @@ impl Response {
         angular_from_kernel(self.inverse_inertia.apply(angular_to_kernel(torque)))
     }
 
-    /// The part of a vector along free axes.
+    /// The component of a vector along free axes.
     pub(super) fn free_linear(&self, acceleration: Vector) -> Vector {
         if !self.locks.is_translation_held() {
             return acceleration;
@@ -53,7 +53,7 @@ impl Response {
         acceleration * vector_from_kernel(self.locks.translation_factors())
     }
 
-    /// The part of an angular acceleration about free axes.
+    /// The component of an angular acceleration about free axes.
     pub(super) fn free_angular(&self, acceleration: AngularVector) -> AngularVector {
         acceleration * angular_from_kernel(self.locks.rotation_factors())
     }

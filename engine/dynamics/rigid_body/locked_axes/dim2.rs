@@ -1,4 +1,4 @@
-//! Locked axes of 2D. `dim3.rs` has those of 3D.
+//! Locked axes of 2D. `dim3.rs` has the locked axes of 3D.
 
 use super::LockedAxes;
 

@@ -1,4 +1,4 @@
-//! Locked axes of 3D. `dim2.rs` has those of 2D.
+//! Locked axes of 3D. `dim2.rs` has the locked axes of 2D.
 
 use super::LockedAxes;
 

@@ -11,11 +11,10 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use derive_more::From;
 use kernel::math::AxisLocks;
 
-/// The world axes along and about which a dynamic body is locked.
+/// The world axes along or about which the motion of a dynamic body is locked.
 ///
-/// A locked axis acts as an infinite mass or inertia along or about it: no force, impulse or contact
-/// changes that component of the velocity. The velocity itself is kept, so an app may drive a body along
-/// a locked axis.
+/// A locked axis acts as an infinite mass or inertia: no force, impulse or contact changes this component of
+/// the velocity. The velocity itself is kept, and an app may drive a body along a locked axis.
 ///
 /// The bits, from the highest: translation along x, y, z, then rotation about x, y, z. In 2D translation
 /// along z is ignored, and rotation is about z, the lowest bit.

@@ -1,8 +1,8 @@
-//! Principal axes of a symmetric 3 × 3 matrix, by the same arithmetic on every machine.
+//! Principal axes of a symmetric 3 × 3 matrix, with the same arithmetic on every machine.
 //!
 //! Cyclic Jacobi rotations (Golub & Van Loan, *Matrix Computations*, §8.5) in `f64`. They use only square
 //! roots and the four operations, while closed forms need an arc cosine. They are accurate for repeated
-//! eigenvalues and for bodies of any size, since there are no absolute tolerances.
+//! eigenvalues and for bodies of any size, because there are no absolute tolerances.
 
 use bevy_math::{DMat3, DVec3};
 use glam_matrix_extras::SymmetricDMat3;

@@ -1,4 +1,5 @@
-//! Mass properties of bodies: mass, angular inertia and centre of mass, from shapes, from the app, or both.
+//! Mass properties of bodies: mass, angular inertia and centre of mass, from shapes, from the app, or from
+//! both.
 //!
 //! A body's totals are [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`]. They
 //! are the sum over
@@ -8,7 +9,7 @@
 //! - each of its colliders on other entities, at its `ColliderTransform`, with values replaced by the
 //!   same components;
 //! - each descendant without a collider that has one of the three components, at its `Transform`. A
-//!   descendant that is a body, and everything below it, does not count.
+//!   descendant that is a body does not count, and neither does anything below it.
 //!
 //! Sensors and disabled colliders have no mass. [`NoAutoMass`] and its siblings restrict a total to the
 //! body's own component. A mass without an inertia scales the inertia of the collider. A centre of mass moves

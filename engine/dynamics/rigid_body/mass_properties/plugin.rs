@@ -15,20 +15,21 @@ use crate::{
 
 /// Computes mass properties of bodies. Part of `PhysicsPlugins`.
 ///
-/// A body is computed when it is spawned, and at the end of each command in which a collider was added,
-/// removed, replaced or became a sensor. With hundreds of colliders it is only computed before the next step.
-/// Before a step only bodies with [`RecomputeMassProperties`](super::components::RecomputeMassProperties) are
-/// computed, so that resting worlds cost nothing. The engine inserts this marker when a body is spawned or
-/// changes type; when one of its colliders is added, removed, disabled, moved on the body, becomes a sensor,
-/// or changes shape or density; when one of the components named in the [module](super) is added, removed or
-/// changed on the body or a descendant. It does not detect that a descendant *without a collider* moves
-/// because of an entity between it and the body: insert the marker then.
+/// A body's mass is computed when the body is spawned, and at the end of each command that added, removed or
+/// replaced a collider or made it a sensor. With hundreds of colliders it is only computed before the next
+/// step. Before a step only bodies with
+/// [`RecomputeMassProperties`](super::components::RecomputeMassProperties) are computed, so resting worlds
+/// cost nothing. The engine inserts this marker when a body is spawned or changes type; when one of its
+/// colliders is added, removed, disabled, moved on the body, becomes a sensor, or changes shape or density;
+/// when one of the components named in the [module](super) is added, removed or changed on the body or a
+/// descendant. The engine does not detect that a descendant *without a collider* moves because of an entity
+/// between it and the body: insert the marker in this case.
 pub struct MassPropertyPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
 impl MassPropertyPlugin {
-    /// Computes in `schedule`, in which physics runs. [`FixedPostUpdate`] by default.
+    /// Computes in `schedule`, which hosts physics. [`FixedPostUpdate`] by default.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern() }
     }

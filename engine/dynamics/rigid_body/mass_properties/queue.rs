@@ -1,4 +1,4 @@
-//! Which bodies have their mass computed again, and the systems that do it.
+//! The queue of bodies whose mass is recomputed, and the systems that recompute it.
 
 use bevy_ecs::{
     entity::{Entities, EntityHashSet},
@@ -24,7 +24,7 @@ use crate::{
 /// Filters for entities with a mass property set by the app.
 type WithOwnMass = Or<(With<Mass>, With<AngularInertia>, With<CenterOfMass>)>;
 
-/// Marks bodies to be computed again, given an entity that belongs to one.
+/// Marks bodies for recomputation, given an entity that belongs to a body.
 #[derive(SystemParam)]
 pub struct MassPropertyQueue<'w, 's> {
     commands: Commands<'w, 's>,
@@ -34,12 +34,12 @@ pub struct MassPropertyQueue<'w, 's> {
 }
 
 impl MassPropertyQueue<'_, '_> {
-    /// Marks the body of an entity: the entity itself, the body of a collider, or the nearest ancestor.
-    /// Does nothing without a body. The body is computed at the end of the command, and again before
-    /// the next step.
+    /// Marks the body of an entity: the entity itself, the body of a collider, or the nearest ancestor. Does
+    /// nothing without a body. The mass is computed at the end of the command, and again before the next
+    /// step.
     pub(crate) fn push(&mut self, entity: Entity) {
         if let Some(body) = self.mark(entity) {
-            // One command each, since commands between them make links.
+            // One command per call, because the commands in between create links.
             self.commands.queue(move |world: &mut World| weigh_now(world, body));
         }
     }
@@ -64,12 +64,12 @@ impl MassPropertyQueue<'_, '_> {
     }
 }
 
-/// Maximum number of parts of a body that is computed after each command. If the parts of larger bodies are
-/// added one by one, summing all of them each time would be quadratic. Larger bodies are computed before the
-/// next step only.
+/// Maximum number of parts of a body that is computed after each command. If the parts of a larger body are
+/// added one by one, summing all of them each time would be quadratic. Larger bodies are computed only before
+/// the next step.
 const MOST_PARTS_AT_ONCE: usize = 256;
 
-/// Kept between calls, since building it takes longer than using it.
+/// Kept between calls, because building it takes longer than using it.
 #[derive(Resource)]
 struct Scales(Option<SystemState<MassPropertyHelper<'static, 'static>>>);
 
@@ -79,7 +79,7 @@ impl FromWorld for Scales {
     }
 }
 
-/// Computes a body between two commands.
+/// Computes the mass of a body between two commands.
 fn weigh_now(world: &mut World, body: Entity) {
     let scales = |world: &mut World| world.get_resource_mut::<Scales>()?.0.take();
     let Some(mut scales) = scales(world) else { return };
@@ -108,13 +108,14 @@ fn on_event<E: EntityEvent, B: Bundle>(event: On<E, B>, mut queue: MassPropertyQ
     queue.push(event.event_target());
 }
 
-/// Computes the mass of a new body at once, without descendants: they are linked later, and computed then.
+/// Computes the mass of a new body at once, without descendants. Descendants are linked later, and then
+/// included.
 fn weigh_new(inserted: On<Insert, RigidBody>, mut helper: MassPropertyHelper) {
     helper.update_mass_properties(inserted.entity);
 }
 
-/// Marks the body of a part without a collider that leaves its parent. [`queue_changed`] detects
-/// where it arrives.
+/// Marks the body of a part without a collider that leaves its parent. [`queue_changed`] detects its new
+/// body.
 fn on_part_detached(
     event: On<Discard, ChildOf>,
     parts: Query<(), (WithOwnMass, Without<ColliderOf>, Without<RigidBody>)>,
@@ -125,8 +126,8 @@ fn on_part_detached(
     }
 }
 
-/// Marks the bodies of mutated components. It scans few entities: those with a mass property set by the app,
-/// and colliders with a parent.
+/// Marks the bodies of mutated components. It scans few entities: entities with a mass property set by the
+/// app, and colliders with a parent.
 pub(super) fn queue_changed(
     changed: Query<
         (Entity, Option<&Mass>, Option<&AngularInertia>, Option<&CenterOfMass>, Option<&Name>),
@@ -196,11 +197,11 @@ pub(crate) fn recompute(
     });
 }
 
-/// Entities that were reported, each once. Despawned ones are dropped from time to time.
+/// Entities that were reported once. Despawned entities are dropped from time to time.
 #[derive(Default)]
 pub(super) struct Reported {
     entities: EntityHashSet,
-    /// Number of entities at which despawned ones are dropped.
+    /// Number of entities at which despawned entities are dropped.
     full: usize,
 }
 
@@ -227,9 +228,9 @@ impl ReportedMassless {
     }
 }
 
-/// Warns of dynamic bodies without mass, once each.
+/// Warns once of each dynamic body without mass.
 ///
-/// Such a body falls, since gravity is an acceleration, but contacts, joints and forces do not move it. A
+/// Such a body falls, because gravity is an acceleration, but contacts, joints and forces do not move it. A
 /// default mass would hide the mistake.
 pub(crate) fn warn_of_missing_mass(
     marked: Query<

@@ -20,7 +20,7 @@ use crate::{
     math::MassProperties,
 };
 
-/// Computes mass properties on demand: the totals of a body, or of parts of it.
+/// Computes mass properties on demand: the totals of a body, or of its parts.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -72,7 +72,7 @@ pub struct MassPropertyHelper<'w, 's> {
 
 impl MassPropertyHelper<'_, '_> {
     /// Computes an entity's [`ComputedMass`], [`ComputedAngularInertia`] and [`ComputedCenterOfMass`] by the
-    /// rules of the [module](super). Does nothing to an entity that lacks one of the three.
+    /// rules of the [module](super). Does nothing to an entity that lacks any of the three.
     ///
     /// A static body gets infinite mass and inertia.
     pub fn update_mass_properties(&mut self, entity: Entity) {
@@ -87,7 +87,8 @@ impl MassPropertyHelper<'_, '_> {
         else {
             return;
         };
-        // A property that is restricted to the own component, without having it, is left to the app.
+        // A property that is restricted to the body's own component is left to the app if this component is
+        // missing.
         let choose_center = if no_auto_center { own_center } else { Some(total.center) };
         if let Some(value) = choose_center {
             center.set_if_neq(computed_center(value));
@@ -119,15 +120,15 @@ impl MassPropertyHelper<'_, '_> {
         self.total(entity).to_properties()
     }
 
-    /// The mass properties of an entity's descendants without itself, in the entity's frame.
+    /// The mass properties of an entity's descendants, without the entity, in the entity's frame.
     pub fn descendants_mass_properties(&self, entity: Entity) -> MassProperties {
         let mut parts = Vec::new();
         self.collect_descendants(entity, &mut parts);
         Part::sum(&parts).to_properties()
     }
 
-    /// The mass properties of an entity without its descendants: of its collider, with values replaced by its
-    /// own components. `None` if it has neither.
+    /// The mass properties of an entity without its descendants: its collider's properties, with values
+    /// replaced by the entity's own components. `None` if it has neither.
     pub fn local_mass_properties(&self, entity: Entity) -> Option<MassProperties> {
         self.local(entity).map(Part::to_properties)
     }
@@ -148,7 +149,7 @@ impl MassPropertyHelper<'_, '_> {
         Some(part.overridden(mass, inertia, center))
     }
 
-    /// Adds the properties of a body's colliders on other entities, then those of its other descendants.
+    /// Adds the properties of a body's colliders on other entities, then of its other descendants.
     fn collect_descendants(&self, body: Entity, parts: &mut Vec<Part>) {
         let Ok((children, colliders, transform, _)) = self.hierarchy.get(body) else {
             return;

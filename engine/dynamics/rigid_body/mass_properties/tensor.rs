@@ -5,11 +5,11 @@ use glam_matrix_extras::SymmetricDMat3;
 
 use super::eigen::{from_principal_axes, principal_axes};
 
-/// Principal values below this share of the largest count as zero: they are rounding errors.
+/// Principal values below this fraction of the largest count as zero: they are rounding errors.
 const SINGULAR: f64 = 1e-13;
 
-/// The inverse of a positive semidefinite tensor, along principal axes where it is neither zero nor infinite.
-/// Zero along the others.
+/// The inverse of a positive semidefinite tensor along principal axes where it is neither zero nor infinite.
+/// Zero along the other axes.
 pub(super) fn invert(tensor: SymmetricDMat3) -> SymmetricDMat3 {
     if !tensor.is_finite() {
         return SymmetricDMat3::ZERO;
@@ -42,7 +42,7 @@ pub(super) fn quaternion_to_matrix(q: DQuat) -> DMat3 {
     )
 }
 
-/// In other axes: R I Rᵀ.
+/// The tensor in rotated axes: R I Rᵀ.
 pub(super) fn rotated(tensor: SymmetricDMat3, rotation: DMat3) -> SymmetricDMat3 {
     if rotation == DMat3::IDENTITY {
         return tensor;
@@ -50,7 +50,7 @@ pub(super) fn rotated(tensor: SymmetricDMat3, rotation: DMat3) -> SymmetricDMat3
     SymmetricDMat3::from_mat3_unchecked(rotation * tensor.to_mat3() * rotation.transpose())
 }
 
-/// About a point at an offset from the centre of mass: I + m (|d|² 1 − d dᵀ).
+/// The tensor about a point at an offset from the centre of mass: I + m (|d|² 1 − d dᵀ).
 pub(super) fn shifted(tensor: SymmetricDMat3, mass: f64, d: DVec3) -> SymmetricDMat3 {
     SymmetricDMat3::new(
         tensor.m00 + mass * (d.y * d.y + d.z * d.z),

@@ -1,4 +1,4 @@
-//! A constraint of the app as one of the kernel.
+//! The kernel's adapter for a constraint of the app.
 
 use core::any::Any;
 use kernel::solver::{CustomBody, CustomConstraint, SubstepParams};
@@ -9,7 +9,7 @@ use crate::math::Scalar;
 /// The kernel's copy of a constraint.
 pub(super) struct Act<C: Constraint> {
     pub(super) constraint: C,
-    /// The rows of this step, and those of the last one.
+    /// The rows of this step, and the rows of the last step.
     rows: Option<C::Rows>,
     pub(super) last: Option<C::Rows>,
 }

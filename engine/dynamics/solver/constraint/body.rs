@@ -1,4 +1,4 @@
-//! [`ConstraintBody`]: a body as a constraint of the app sees it.
+//! [`ConstraintBody`]: a body in the interface of constraints.
 
 use kernel::solver::CustomBody;
 
@@ -12,30 +12,30 @@ use crate::{
 
 /// One of the two bodies of a [`Constraint`](super::Constraint).
 ///
-/// Points of the body are given by their arms: the vectors from the centre of mass, in m along the world's
-/// axes. Impulses on bodies that are not dynamic have no effect.
+/// A point of the body is given by its arm: the vector from the centre of mass to the point, in m along the
+/// world's axes. Impulses on bodies that are not dynamic have no effect.
 #[derive(Debug)]
 pub struct ConstraintBody<'a>(pub(super) &'a mut CustomBody);
 
 impl ConstraintBody<'_> {
-    /// The centre of mass now, in m.
+    /// The current centre of mass, in m.
     pub fn center(&self) -> Vector {
         world_from_kernel(self.0.center + self.0.shift.to_world())
     }
 
-    /// The rotation now.
+    /// The current rotation.
     pub fn rotation(&self) -> Rotation {
         Rotation::from_kernel(self.0.turn.mul(self.0.rotation))
     }
 
-    /// The arm now of a point that is given in the body's frame, in m.
+    /// The current arm of a point given in the body's frame, in m.
     pub fn arm_of(&self, local_point: Vector) -> Vector {
         let arm = self.0.rotation.rotate(vector_to_kernel(local_point) - self.0.local_center);
         vector_from_kernel(self.0.turn.rotate(arm))
     }
 
-    /// The vector now from a point of the first body to one of the second, given by their arms now. Exact
-    /// also far from the origin.
+    /// The current vector from a point of the first body to a point of the second, given by their current
+    /// arms. Exact even far from the origin.
     pub fn offset(bodies: &[Self; 2], arms: [Vector; 2]) -> Vector {
         let [a, b] = bodies.each_ref().map(|body| &*body.0);
         let offset = (b.center - a.center).to_local() + (b.shift - a.shift);
@@ -52,12 +52,12 @@ impl ConstraintBody<'_> {
         angular_from_kernel(self.0.angular)
     }
 
-    /// The velocity in m/s of the point at an arm.
+    /// The velocity in m/s of the point with this arm.
     pub fn velocity_at(&self, arm: Vector) -> Vector {
         vector_from_kernel(self.0.velocity_at(vector_to_kernel(arm)))
     }
 
-    /// Applies an impulse in N·s at an arm.
+    /// Applies an impulse in N·s at the point with this arm.
     pub fn apply_impulse(&mut self, impulse: Vector, arm: Vector) {
         self.0.push(vector_to_kernel(impulse), vector_to_kernel(arm));
     }
@@ -67,19 +67,20 @@ impl ConstraintBody<'_> {
         self.0.twist(angular_to_kernel(impulse));
     }
 
-    /// The inverse mass along each of the world's axes, in 1/kg: zero along locked ones, and for bodies that
+    /// The inverse mass along each of the world's axes, in 1/kg: zero along locked axes, and for bodies that
     /// are not dynamic.
     pub fn inverse_mass(&self) -> Vector {
         vector_from_kernel(self.0.inv_mass)
     }
 
-    /// The inverse angular inertia in 1/(kg·m²), in 3D about the world's axes: zero about locked ones, and
+    /// The inverse angular inertia in 1/(kg·m²), in 3D about the world's axes: zero about locked axes, and
     /// for bodies that are not dynamic.
     pub fn inverse_angular_inertia(&self) -> SymmetricTensor {
         inv_inertia_from_kernel(self.0.inv_inertia)
     }
 
-    /// The velocity along a unit vector of the point at an arm, per impulse along it, in 1/kg.
+    /// The inverse effective mass, in 1/kg, of the point with this arm along a unit direction: its velocity
+    /// along the direction per impulse along it.
     pub fn inverse_mass_along(&self, direction: Vector, arm: Vector) -> Scalar {
         Scalar::from(self.0.inv_mass_along(vector_to_kernel(direction), vector_to_kernel(arm)))
     }

@@ -1,11 +1,11 @@
-//! Constraints of the app that the kernel solves with contacts and joints. Beyond Avian.
+//! Constraints of the app, solved by the kernel with contacts and joints. Beyond Avian.
 //!
-//! A [`Constraint`] is a component on an entity of its own. [`ConstraintPlugin`] makes a type of them act. In
-//! each substep it changes the velocities of two bodies, in turns with contacts and joints and by all
-//! threads. Its bodies are in one island: they sleep and wake together.
+//! A [`Constraint`] is a component on its own entity. [`ConstraintPlugin`] activates a type of constraints.
+//! In each substep a constraint changes the velocities of two bodies, in turn with contacts and joints and on
+//! all threads. The bodies are in one island: they sleep and wake together.
 //!
-//! A spring that pulls its bodies towards each other, implicit in each substep, so that it is stable
-//! however stiff:
+//! This example is a spring that pulls its bodies towards each other. It is implicit in each substep, and
+//! therefore stable at any stiffness:
 //!
 //! ```
 //! # use avian::{
@@ -79,18 +79,19 @@ use crate::{dynamics::joints::EntityConstraint, math::Scalar};
 
 /// A constraint between two bodies that the kernel solves; see the [module](self).
 ///
-/// It acts while both entities are bodies in the simulation, and it has no
+/// The constraint acts while both entities are bodies in the simulation and it has no
 /// [`JointDisabled`](crate::dynamics::joints::JointDisabled). The kernel works on a copy: a change of the
-/// component takes effect in the next step, and wakes the bodies. Constraints of one type and of others are
-/// solved in a fixed order or by several threads at once, where they share no body that moves. So an
-/// implementation must not depend on any state but its own, and the same input must give the same output.
-/// Then results have the same bits for any number of threads.
+/// component takes effect in the next step, and wakes the bodies. Constraints of all types are solved in a
+/// fixed order, or by several threads at once if they share no moving body. Therefore an implementation must
+/// not depend on any state but its own, and the same input must give the same output. Then results have the
+/// same bits for any number of threads.
 pub trait Constraint: Component + EntityConstraint<2> + Clone {
-    /// What is computed once per step, and the impulses that are summed up in its substeps.
+    /// The data computed once per step, with the impulses that its substeps accumulate.
     type Rows: Clone + Send + Sync + 'static;
 
-    /// Prepares for a step. The bodies are where the step begins. `last` are the rows of the last step in
-    /// which it acted. May be called more than once in a step, with the same `last`.
+    /// Prepares the constraint for a step. The bodies are at their poses at the start of the step. `last` are
+    /// the rows of the last step in which the constraint acted. May be called more than once in a step, with
+    /// the same `last`.
     fn prepare(
         &self,
         bodies: &[ConstraintBody; 2],
@@ -98,15 +99,15 @@ pub trait Constraint: Component + EntityConstraint<2> + Clone {
         last: Option<&Self::Rows>,
     ) -> Self::Rows;
 
-    /// At the start of a substep, applies the impulses of the last one, so that only their change is left
-    /// to be solved.
+    /// At the start of a substep, applies the impulses of the last substep. Then only their change is left to
+    /// solve.
     fn warm_start(&self, _rows: &mut Self::Rows, _bodies: &mut [ConstraintBody; 2], _step: &ConstraintStep) {}
 
-    /// Changes velocities so that the constraint holds.
+    /// Changes velocities to satisfy the constraint.
     ///
-    /// Called twice in a substep: before positions are integrated, with `use_bias`, so that errors of
-    /// positions are reduced as well; and after, without, so that what reduced them is not left in the
-    /// velocities. Springs do nothing in the second call.
+    /// Called twice in a substep. The first call, before positions are integrated, has `use_bias` and also
+    /// reduces position errors. The second call, after the integration, has no bias and removes the velocity
+    /// caused by the bias. Springs do nothing in the second call.
     fn solve(
         &self,
         rows: &mut Self::Rows,
@@ -116,7 +117,7 @@ pub trait Constraint: Component + EntityConstraint<2> + Clone {
     );
 }
 
-/// The times of a step, and what is common to all constraints.
+/// The lengths of a step and its substeps, and settings common to all constraints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ConstraintStep {
@@ -124,6 +125,6 @@ pub struct ConstraintStep {
     pub delta: Scalar,
     /// The length of the step, in s.
     pub step_delta: Scalar,
-    /// The share of the last impulses to be applied in the warm start, 0 to 1.
+    /// The fraction of the last impulses to apply in the warm start, 0 to 1.
     pub warm_start: Scalar,
 }

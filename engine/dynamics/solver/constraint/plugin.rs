@@ -1,4 +1,4 @@
-//! [`ConstraintPlugin`] makes a type of constraints act.
+//! [`ConstraintPlugin`] activates a type of constraints.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::{prelude::*, system::SystemParam};
@@ -15,7 +15,7 @@ use crate::{
     step,
 };
 
-/// Makes constraints of a type act; see the [module](super). To be added after
+/// Activates constraints of a type; see the [module](super). Add it after
 /// [`PhysicsPlugins`](crate::PhysicsPlugins).
 pub struct ConstraintPlugin<C: Constraint>(PhantomData<fn() -> C>);
 
@@ -29,7 +29,7 @@ impl<C: Constraint> Default for ConstraintPlugin<C> {
 #[derive(Resource, Default)]
 struct TypeCount(u32);
 
-/// The number of a type: the place of its plugin among those of all types.
+/// The number of a type: the index of its plugin among the plugins of all types.
 #[derive(Resource)]
 struct TypeNumber<C>(u32, PhantomData<fn() -> C>);
 
@@ -45,7 +45,7 @@ impl<C: Constraint> Plugin for ConstraintPlugin<C> {
     }
 }
 
-/// Notes the constraints of a type, and passes changes on to the kernel.
+/// Notes the constraints of a type, and sends changes to the kernel.
 fn note_constraints<C: Constraint>(
     constraints: Query<(Entity, Ref<C>), Without<JointDisabled>>,
     number: Res<TypeNumber<C>>,
@@ -76,8 +76,7 @@ fn note_constraints<C: Constraint>(
     }
 }
 
-/// Reads the rows of constraints as they were at the end of the last step in which they acted: their
-/// impulses, for example.
+/// Reads the rows of constraints at the end of the last step in which they acted, for example their impulses.
 #[derive(SystemParam)]
 pub struct ConstraintRows<'w, C: Constraint> {
     ties: Res<'w, Ties>,
@@ -86,7 +85,7 @@ pub struct ConstraintRows<'w, C: Constraint> {
 }
 
 impl<C: Constraint> ConstraintRows<'_, C> {
-    /// The rows of the constraint of an entity. `None` before its first step, and while it does not act.
+    /// The rows of an entity's constraint. `None` before its first step, and while it does not act.
     pub fn get(&self, entity: Entity) -> Option<&C::Rows> {
         let id = self.ties.id((self.number.0, entity))?;
         self.solver.kernel.customs.act(id)?.as_any().downcast_ref::<Act<C>>()?.last.as_ref()

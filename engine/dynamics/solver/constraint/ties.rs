@@ -1,8 +1,8 @@
-//! Which bodies constraints of the app connect: the table behind all types of them.
+//! The bodies connected by constraints of the app, in one table for all types of constraints.
 //!
-//! At the start of a step each type notes the constraints that it has. What is noted and not in the kernel
-//! enters, and what is in the kernel and was not noted leaves. So a constraint may come before its bodies,
-//! and a body may leave and come back.
+//! At the start of a step each type notes its constraints. A noted constraint that is not in the kernel is
+//! added, and a constraint in the kernel that was not noted is removed. Therefore a constraint may be spawned
+//! before its bodies, and a body may leave and return.
 
 use bevy_app::App;
 use bevy_ecs::{
@@ -26,18 +26,18 @@ use crate::{
     step::{self, Stage},
 };
 
-/// The number of the first type that is solved by XPBD. Those before are of the kernel.
+/// The number of the first type that XPBD solves. The kernel solves types with lower numbers.
 #[cfg(feature = "xpbd_joints")]
 pub(crate) const FIRST_XPBD: u32 = 1 << 31;
 
-/// A constraint: the number of its type, and its entity. An entity may have one of each type.
+/// A constraint: the number of its type, and its entity. An entity may have one constraint of each type.
 pub(crate) type Key = (u32, Entity);
 
-/// A constraint that the app has.
+/// A constraint noted by the app.
 struct Wanted {
     key: Key,
     ends: [Entity; 2],
-    /// What it does, if it is new.
+    /// Its implementation, if the constraint is new.
     act: Option<Box<dyn CustomConstraint>>,
 }
 
@@ -57,7 +57,7 @@ struct Tied {
 }
 
 impl Tied {
-    /// Whether it is in the kernel between the bodies that are at these ends now.
+    /// Whether the constraint is in the kernel between the current bodies of these ends.
     fn is_current(&self, ends: [Entity; 2], bodies: &BodyTable, ids: &BodyIds) -> bool {
         let is_live = bodies.constraints(ConstraintKind::Custom).is_live(self.id);
         let found = ends.map(|end| ids.get(end).ok().map(|id| id.0));
@@ -68,7 +68,7 @@ impl Tied {
 /// Ids of bodies by entity.
 pub(crate) type BodyIds<'w, 's> = Query<'w, 's, &'static BodyId, Allow<Disabled>>;
 
-/// Why a constraint has no effect, as told to the app.
+/// Why a constraint has no effect, as reported to the app.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Complaint {
     SameBody,
@@ -80,14 +80,14 @@ enum Complaint {
 #[derive(Resource, Clone, Default)]
 pub(crate) struct Ties {
     wanted: Vec<Wanted>,
-    /// In the order of types and entities, which is that in which they get ids.
+    /// Constraints in the kernel, ordered by type and entity. They get their ids in this order.
     held: BTreeMap<Key, Tied>,
     told: EntityHashMap<Complaint>,
 }
 
 impl Ties {
-    /// Notes that the app has a constraint. `act` is what it does, if the kernel does not
-    /// [have](Self::id) it yet.
+    /// Notes a constraint of the app. `act` is its implementation, if the kernel does not [have](Self::id) it
+    /// yet.
     pub(crate) fn want(&mut self, key: Key, ends: [Entity; 2], act: Option<Box<dyn CustomConstraint>>) {
         self.wanted.push(Wanted { key, ends, act });
     }
@@ -97,8 +97,7 @@ impl Ties {
         self.held.get(&key).map(|tied| tied.id)
     }
 
-    /// The ids of a constraint and its bodies, if it is in the kernel between the bodies that are at
-    /// its ends now.
+    /// The ids of a constraint and its bodies, if it is in the kernel between the current bodies of its ends.
     pub(crate) fn current(
         &self,
         key: Key,
@@ -110,7 +109,7 @@ impl Ties {
         tied.is_current(ends, bodies, ids).then_some((tied.id, tied.bodies))
     }
 
-    /// Tells the app once that a constraint gave velocities that are not finite.
+    /// Warns once that a constraint gave velocities that are not finite.
     pub(crate) fn tell_not_finite(&mut self, entity: Entity) {
         if self.told.insert(entity, Complaint::NotFinite) != Some(Complaint::NotFinite) {
             warn!("the constraint {entity} gave a velocity that is not finite, which is ignored");
@@ -135,7 +134,7 @@ impl Ties {
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct NoteTies;
 
-/// Adds the table, and the system that keeps it.
+/// Adds the table, and the system that updates it.
 pub(crate) fn install(app: &mut App) {
     if app.world().contains_resource::<Ties>() {
         return;
@@ -146,7 +145,7 @@ pub(crate) fn install(app: &mut App) {
     step::add_systems(app, PhysicsSchedule, settle);
 }
 
-/// Adds constraints that were noted to the kernel, and removes those that were not.
+/// Adds noted constraints to the kernel, and removes constraints that were not noted.
 fn settle_ties(mut ties: ResMut<Ties>, mut solver: ResMut<StepSolver>, mut tables: Tables, ids: BodyIds) {
     let ties = ties.bypass_change_detection();
     if ties.wanted.is_empty() && ties.held.is_empty() {
@@ -157,8 +156,8 @@ fn settle_ties(mut ties: ResMut<Ties>, mut solver: ResMut<StepSolver>, mut table
     let id_of = |end: Entity| ids.get(end).ok().map(|id| id.0);
     let find = |key: Key| wanted.binary_search_by_key(&key, |wanted| wanted.key).ok();
     let customs = &mut solver.kernel.customs;
-    // First those that leave: a body that left has taken its constraints along, and their ids may
-    // be used again.
+    // Constraints are removed first: a body that left has removed its constraints, and their ids may be
+    // reused.
     ties.held.retain(|&key, tied| {
         let is_live = tables.bodies.table.constraints(ConstraintKind::Custom).is_live(tied.id);
         let is_same = |wanted: &Wanted| tied.is_current(wanted.ends, &tables.bodies.table, &ids);

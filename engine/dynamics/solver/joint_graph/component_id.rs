@@ -6,7 +6,7 @@ use bevy_ecs::{
 };
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
-/// The component that is the joint of an entity. An entity has one joint.
+/// The id of the component that is the entity's joint. An entity has at most one joint.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(type_path = false, Debug, Component, Default, PartialEq)]
 pub struct JointComponentId(#[reflect(ignore)] pub(super) Option<ComponentId>);

@@ -1,4 +1,4 @@
-//! [`JointGraph`]: which joints hold which bodies.
+//! [`JointGraph`]: the joints between bodies, as a graph.
 
 mod component_id;
 mod plugin;
@@ -16,12 +16,12 @@ use bevy_reflect::Reflect;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use core::fmt;
 
-/// The joints between entities, each as an edge.
+/// The graph of joints: each joint is an edge between two entities.
 ///
-/// It has the joints of all types with a [`JointGraphPlugin`] that are neither disabled nor despawned,
-/// whether or not their entities are bodies. It follows at once when a joint is spawned, inserted, removed or
-/// disabled, and at the start of the next step when its bodies were mutated. Joints of a body are in the
-/// order in which they were added, unless some were removed.
+/// It contains the joints of all types with a [`JointGraphPlugin`] that are neither disabled nor despawned,
+/// whether or not their entities are bodies. It is updated at once when a joint is spawned, inserted, removed
+/// or disabled, and at the start of the next step when a joint's bodies were mutated. The joints of a body
+/// are in the order in which they were added, unless some were removed.
 ///
 /// ```
 /// # use avian::{dynamics::solver::joint_graph::JointGraph, prelude::*};
@@ -36,14 +36,14 @@ use core::fmt;
 /// ```
 #[derive(Resource, Clone, Debug, Default)]
 pub struct JointGraph {
-    /// Edges by id. Those of free ids are `None`.
+    /// Edges by id. Free ids have `None`.
     edges: Vec<Option<JointGraphEdge>>,
     free: Vec<JointId>,
     by_joint: EntityHashMap<JointId>,
     by_body: EntityHashMap<Vec<JointId>>,
 }
 
-/// The id of a joint in [`JointGraph`]. Ids of removed joints are used again.
+/// The id of a joint in [`JointGraph`]. Ids of removed joints are reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Reflect)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -106,12 +106,12 @@ impl JointGraph {
         self.edges.get(joint_id.0 as usize)?.as_ref()
     }
 
-    /// The edge of a joint's entity. The graph goes by the fields as they were when the edge was added.
+    /// The edge of a joint's entity. Changing its fields does not change the graph.
     pub fn get_mut(&mut self, joint: Entity) -> Option<&mut JointGraphEdge> {
         self.get_mut_by_id(self.entity_to_joint(joint)?)
     }
 
-    /// The edge with an id. The graph goes by the fields as they were when the edge was added.
+    /// The edge with an id. Changing its fields does not change the graph.
     pub fn get_mut_by_id(&mut self, joint_id: JointId) -> Option<&mut JointGraphEdge> {
         self.edges.get_mut(joint_id.0 as usize)?.as_mut()
     }
@@ -126,12 +126,12 @@ impl JointGraph {
         self.ids_of(body).iter().filter_map(|id| self.get_by_id(*id))
     }
 
-    /// The joints of a body. The graph goes by the fields as they were when an edge was added.
+    /// The joints of a body. Changing the fields of an edge does not change the graph.
     pub fn joints_of_mut(&mut self, body: Entity) -> impl Iterator<Item = &mut JointGraphEdge> {
         let mut ids: Vec<usize> = self.ids_of(body).iter().map(|id| id.0 as usize).collect();
         ids.sort_unstable();
         let mut rest = self.edges.iter_mut().enumerate();
-        // Both lists ascend.
+        // Both lists are in ascending order.
         ids.into_iter().filter_map(move |id| rest.find(|(place, _)| *place == id)?.1.as_mut())
     }
 
@@ -140,13 +140,13 @@ impl JointGraph {
         self.get(joint).map(|edge| [edge.body1, edge.body2])
     }
 
-    /// The bodies that joints hold at a body, once for each joint.
+    /// The bodies attached to a body by joints, once per joint.
     pub fn bodies_attached_to(&self, body: Entity) -> impl Iterator<Item = Entity> + '_ {
         self.joints_of(body).map(move |edge| if edge.body1 == body { edge.body2 } else { edge.body1 })
     }
 
-    /// Adds an edge between two bodies, or replaces that of the joint's entity. The fields of the edge follow
-    /// from the arguments.
+    /// Adds an edge between two bodies, or replaces the edge of the joint's entity. The arguments determine
+    /// the fields of the edge.
     pub fn add_joint(&mut self, body1: Entity, body2: Entity, joint_edge: JointGraphEdge) -> JointId {
         self.remove_joint(joint_edge.entity);
         let id = self.free.pop().unwrap_or(JointId(self.edges.len() as u32));

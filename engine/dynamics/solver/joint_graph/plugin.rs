@@ -12,11 +12,11 @@ use crate::{
     step::{self, Stage},
 };
 
-/// Keeps the joints of a type in [`JointGraph`], and sees that an entity has one joint only: the last one
-/// that was inserted stays.
+/// Keeps the joints of a type in [`JointGraph`], and ensures that an entity has only one joint: the last
+/// joint that was inserted stays.
 ///
-/// [`SolverPlugins`](crate::dynamics::solver::SolverPlugins) has it for all joints of the engine. Add it for
-/// a type of your own to find it in the graph.
+/// [`SolverPlugins`](crate::dynamics::solver::SolverPlugins) includes this plugin for all joints of the
+/// engine. Add it for your own type to include the type in the graph.
 pub struct JointGraphPlugin<T: Component + EntityConstraint<2>>(PhantomData<fn() -> T>);
 
 impl<T: Component + EntityConstraint<2>> Default for JointGraphPlugin<T> {
@@ -47,13 +47,14 @@ impl<T: Component + EntityConstraint<2>> Plugin for JointGraphPlugin<T> {
             }
         });
         app.add_observer(move |on: On<Insert, Settings>, mut edges: Edges<T>| edges.refresh(on.entity, own))
-            // The component is still there, and the joint may leave with it: the edge is
-            // refreshed after both.
+            // The component still exists here, and the joint may be removed with it. The edge is refreshed
+            // after both.
             .add_observer(move |on: On<Remove, Settings>, mut commands: Commands| {
                 commands.run_system_cached_with(refresh::<T>, (on.entity, own));
             });
 
-        // Plugins are built in order, and so run their systems: edges get the same ids in every run.
+        // Plugins are built in order, and their systems run in the same order: edges get the same ids in
+        // every run.
         let place = app.world().resource::<Places>().0;
         app.world_mut().resource_mut::<Places>().0 += 1;
         let sync = move |changed: Query<Entity, Changed<T>>, mut edges: Edges<T>| {
@@ -67,7 +68,7 @@ impl<T: Component + EntityConstraint<2>> Plugin for JointGraphPlugin<T> {
     }
 }
 
-/// Components beside a joint that its edge follows from.
+/// Components beside a joint that determine its edge.
 type Settings = (JointDisabled, Disabled, JointCollisionDisabled);
 
 /// Refreshes the edge of a joint.
@@ -86,7 +87,7 @@ struct Places(usize);
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Place(usize);
 
-/// Components that an edge follows from.
+/// Components that determine an edge.
 type EdgeState<T> = (
     &'static T,
     &'static mut JointComponentId,
@@ -108,7 +109,7 @@ impl<T: Component + EntityConstraint<2>> Edges<'_, '_, T> {
         self.joints.get(joint).is_ok_and(|(_, id, ..)| id.0 == Some(own))
     }
 
-    /// Makes a joint that was inserted the only one of its entity.
+    /// Makes an inserted joint the only joint of its entity.
     fn claim(&mut self, joint: Entity, own: ComponentId, mut commands: Commands) {
         let Ok((_, mut id, ..)) = self.joints.get_mut(joint) else { return };
         if let Some(other) = id.0.replace(own)

@@ -20,11 +20,11 @@ use crate::schedule::{Physics, Substeps};
 /// [`Position`](crate::dynamics::integrator::IntegrationSystems::Position),
 /// [`Relax`](SubstepSolverSystems::Relax), [`Damping`](SubstepSolverSystems::Damping).
 ///
-/// While only the engine's own systems are in it, without run conditions, one call per substep runs instead,
-/// with the same result.
+/// While the schedule contains only the engine's own systems, without run conditions, one kernel call per
+/// substep replaces it, with the same result.
 ///
-/// Systems run one after the other, and an ambiguous order is an error. The generic [`Time`] is
-/// [`Time<Substeps>`](Substeps) in it.
+/// Systems run one after the other, and an ambiguous order is an error. Within this schedule the generic
+/// [`Time`] is [`Time<Substeps>`](Substeps).
 #[derive(Debug, Hash, PartialEq, Eq, Clone, ScheduleLabel)]
 pub struct SubstepSchedule;
 
@@ -75,8 +75,8 @@ pub type SubstepSolverSet = SubstepSolverSystems;
 
 /// Number of substeps per step. 6 by default. 0 counts as 1.
 ///
-/// Contacts are computed once per step, the solver runs once per substep: more substeps make stacks and
-/// joints stiffer, and cost solver time only.
+/// Contacts are computed once per step, and the solver runs once per substep. More substeps make stacks and
+/// joints stiffer, and cost only solver time.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -103,8 +103,8 @@ pub(crate) fn substep_delta(step: Duration, count: SubstepCount) -> Duration {
     step / count.0.max(1)
 }
 
-/// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so that systems before the substeps
-/// know their length. Each later substep advances it.
+/// Advances [`Time<Substeps>`](Substeps) to the end of the first substep, so systems before the substeps know
+/// their length. Each later substep advances it.
 pub(crate) fn start_substep_clock(
     mut substeps: ResMut<Time<Substeps>>,
     physics: Res<Time<Physics>>,
@@ -113,7 +113,7 @@ pub(crate) fn start_substep_clock(
     advance_substep(&mut substeps, substep_delta(physics.delta(), *count));
 }
 
-/// Advances the clock of the substeps by one, at most to the end of time.
+/// Advances the substep clock by one substep, at most to the maximum time.
 pub(crate) fn advance_substep(clock: &mut Time<Substeps>, delta: Duration) {
     let left = Duration::MAX - clock.elapsed();
     clock.advance_by(delta.min(left));

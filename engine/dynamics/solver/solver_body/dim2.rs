@@ -11,7 +11,7 @@ pub(super) fn locked_inertia(inverse: SymmetricTensor, locks: AxisLocks) -> Symm
     if locks.rotation() == 0 { inverse } else { 0.0 }
 }
 
-/// Whether the gyroscopic torque turns the spin axis: there is none in the plane.
+/// Whether the gyroscopic torque changes the rotation axis. Never in 2D.
 pub(super) fn is_gyroscopic(_inertia: &ComputedAngularInertia) -> bool {
     false
 }

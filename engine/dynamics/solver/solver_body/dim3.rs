@@ -7,7 +7,7 @@ use crate::{
     math::{MatExt, Scalar, SymmetricTensor, inv_inertia_from_kernel, inv_inertia_to_kernel},
 };
 
-/// An inverse inertia in world axes, zero about locked ones.
+/// An inverse inertia in world axes, zero about locked axes.
 pub(super) fn locked_inertia(inverse: SymmetricTensor, locks: AxisLocks) -> SymmetricTensor {
     if locks.rotation() == 0 {
         return inverse;
@@ -15,7 +15,7 @@ pub(super) fn locked_inertia(inverse: SymmetricTensor, locks: AxisLocks) -> Symm
     inv_inertia_from_kernel(inv_inertia_to_kernel(inverse).locked(locks))
 }
 
-/// Whether the gyroscopic torque turns the spin axis: the inertia is not that of a ball.
+/// Whether the gyroscopic torque changes the rotation axis: the inertia is not equal about all axes.
 pub(super) fn is_gyroscopic(inertia: &ComputedAngularInertia) -> bool {
     let inverse = inertia.inverse();
     let largest = inverse.m00.abs().max(inverse.m11.abs()).max(inverse.m22.abs());

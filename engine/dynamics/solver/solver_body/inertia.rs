@@ -1,4 +1,4 @@
-//! [`SolverBodyInertia`]: the mass properties of a body as constraints see them.
+//! [`SolverBodyInertia`]: the mass properties of a body for constraints.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
@@ -9,11 +9,10 @@ use crate::{
     math::{NO_INERTIA, Scalar, SymmetricTensor, Vector, vector_from_kernel},
 };
 
-/// The dominance of bodies that are not dynamic: above all others.
+/// The dominance of bodies that are not dynamic: above all dynamic bodies.
 const ABOVE_ALL: i16 = i8::MAX as i16 + 1;
 
-/// Inverse mass and inertia of a body within a step, with locked axes taken into account; see the
-/// [module](super).
+/// Inverse mass and inertia of a body within a step, including locked axes; see the [module](super).
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Debug, Default)]
 #[reflect(type_path = false)]
@@ -33,7 +32,7 @@ impl Default for SolverBodyInertia {
 }
 
 impl SolverBodyInertia {
-    /// That of a body that nothing moves.
+    /// The inertia of an immovable body.
     pub const DUMMY: Self = Self {
         inv_mass: Vector::ZERO,
         inv_inertia: NO_INERTIA,
@@ -41,8 +40,8 @@ impl SolverBodyInertia {
         flags: InertiaFlags::STATIC,
     };
 
-    /// From inverse mass in 1/kg and inverse angular inertia in 1/(kg·m²), in 3D about the world's axes.
-    /// Bodies that are not dynamic have infinite mass and inertia, and the highest dominance.
+    /// The inertia from inverse mass in 1/kg and inverse angular inertia in 1/(kg·m²), in 3D about the
+    /// world's axes. Bodies that are not dynamic have infinite mass and inertia, and the highest dominance.
     pub fn new(
         inv_mass: Scalar,
         inv_inertia: SymmetricTensor,
@@ -62,35 +61,35 @@ impl SolverBodyInertia {
         inertia
     }
 
-    /// Sets the flags that say what is infinite.
+    /// Sets the flags of infinite mass and inertia.
     pub(super) fn update_flags(&mut self) {
         self.flags.set(InertiaFlags::INFINITE_MASS, self.inv_mass == Vector::ZERO);
         self.flags.set(InertiaFlags::INFINITE_ANGULAR_INERTIA, self.inv_inertia == NO_INERTIA);
     }
 
-    /// The inverse mass along each of the world's axes, in 1/kg: zero along locked ones.
+    /// The inverse mass along each of the world's axes, in 1/kg: zero along locked axes.
     pub fn effective_inv_mass(&self) -> Vector {
         self.inv_mass
     }
 
-    /// The inverse angular inertia in 1/(kg·m²), in 3D about the world's axes: zero about locked ones.
+    /// The inverse angular inertia in 1/(kg·m²), in 3D about the world's axes: zero about locked axes.
     pub fn effective_inv_angular_inertia(&self) -> SymmetricTensor {
         self.inv_inertia
     }
 
-    /// The [`Dominance`](crate::dynamics::rigid_body::Dominance), or one more than the highest for bodies
-    /// that are not dynamic.
+    /// The [`Dominance`](crate::dynamics::rigid_body::Dominance). Bodies that are not dynamic have one more
+    /// than the highest value.
     pub fn dominance(&self) -> i16 {
         self.dominance
     }
 
-    /// Locked axes, and what is infinite.
+    /// Locked axes, and flags of infinite mass and inertia.
     pub fn flags(&self) -> InertiaFlags {
         self.flags
     }
 }
 
-/// Locked axes as in [`LockedAxes`], and what is infinite.
+/// Locked axes as in [`LockedAxes`], and flags of infinite mass and inertia.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Debug, Default, PartialEq)]
 #[reflect(type_path = false)]

@@ -1,8 +1,8 @@
-//! Between the rows of bodies and their [`SolverBody`], while systems of the app ask for it.
+//! Copies between the rows of bodies and their [`SolverBody`], if systems of the app query it.
 //!
-//! Rows hold the truth while the solver runs, components while systems of the app run. So each of the
-//! solver's systems in a substep begins with [`take_back`] and ends with [`lend_again`]. Both do nothing
-//! where the component is not known to the world: then no system of the app queries it.
+//! Rows are authoritative while the solver runs, components while systems of the app run. Therefore each of
+//! the solver's systems in a substep begins with [`take_back`] and ends with [`lend_again`]. Both do nothing
+//! if the component is not registered in the world: then no system of the app queries it.
 
 use bevy_ecs::{prelude::*, schedule::ScheduleLabel, system::SystemState};
 use kernel::{data::BitSet, solver::BodyRow, table::NONE};
@@ -22,18 +22,18 @@ use crate::{
     physics_transform::{PreSolveDeltaPosition, PreSolveDeltaRotation},
 };
 
-/// Bodies that have the component, with the tables of their rows.
+/// Bodies with the component, and the tables of their rows.
 type LentBodies<'w, 's> = (
     Query<'w, 's, (Entity, &'static BodyId, &'static mut SolverBody)>,
     ResMut<'w, StepSolver>,
     Res<'w, Bodies>,
 );
 
-/// Bodies that get the component.
+/// Bodies that receive the component.
 type Borrowers<'w, 's> =
     (Query<'w, 's, (RigidBodyQueryReadOnly, Has<SolverBody>)>, Res<'w, StepSolver>, Res<'w, Bodies>);
 
-/// Queries, and buffers that are kept between calls.
+/// Queries and buffers, reused between calls.
 #[derive(Resource)]
 pub(crate) struct Lending {
     lent: SystemState<LentBodies<'static, 'static>>,
@@ -47,26 +47,26 @@ impl FromWorld for Lending {
     }
 }
 
-/// Whether a system of the app asks for the state of bodies.
+/// Whether a system of the app queries the state of bodies.
 pub(crate) fn is_asked_for(world: &World) -> bool {
     let components = world.components();
     components.component_id::<SolverBody>().is_some()
         || components.component_id::<SolverBodyInertia>().is_some()
 }
 
-/// Builds the schedule of the substeps if the app changed it, so that its systems are known before they run.
+/// Builds the substep schedule if the app changed it. This makes its systems known before they run.
 fn build_substeps(world: &mut World) {
     let own = world.get_resource::<OwnSubstepSystems>();
     let schedule = world.get_resource::<Schedules>().and_then(|schedules| schedules.get(SubstepSchedule));
     let (Some(own), Some(schedule)) = (own, schedule) else { return };
     if schedule.systems().is_err() && !own.are_all_of(schedule) {
-        // An error is reported where the schedule runs.
+        // Running the schedule reports the error.
         world.schedule_scope(SubstepSchedule.intern(), |world, schedule| _ = schedule.initialize(world));
     }
 }
 
-/// At the start of the solver: gives all bodies with a row the components, with the state of now, and takes
-/// them from others.
+/// At the start of the solver: gives all bodies with a row the components with the current state, and removes
+/// the components from all other bodies.
 pub(crate) fn lend_bodies(world: &mut World) {
     build_substeps(world);
     if !is_asked_for(world) {
@@ -102,7 +102,7 @@ pub(crate) fn lend_bodies(world: &mut World) {
     });
 }
 
-/// Takes the components from bodies without a row, or asleep.
+/// Removes the components from sleeping bodies and bodies without a row.
 pub(crate) fn end_lending(world: &mut World) {
     if !is_asked_for(world) {
         return;
@@ -124,8 +124,8 @@ pub(crate) fn end_lending(world: &mut World) {
     });
 }
 
-/// Writes what systems of the app changed to the rows. A body whose state is not finite stops
-/// and is disabled.
+/// Writes the changes by systems of the app to the rows. A body with a state that is not finite stops and is
+/// disabled.
 pub(crate) fn take_back(world: &mut World) {
     if !is_asked_for(world) || !world.contains_resource::<Lending>() {
         return;

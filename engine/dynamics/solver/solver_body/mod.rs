@@ -1,14 +1,13 @@
 //! The state of bodies within a step, as components for systems of the app: [`SolverBody`] and
 //! [`SolverBodyInertia`].
 //!
-//! The solver keeps awake bodies in rows of the kernel. Once a system of the app queries one of these
+//! The solver keeps awake bodies in rows of the kernel. If a system of the app queries one of these
 //! components, awake dynamic and kinematic bodies have both from
-//! [`PrepareSolverBodies`](super::schedule::SolverSystems::PrepareSolverBodies) on. They are written
-//! before and read after systems in [`SubstepSchedule`](super::schedule::SubstepSchedule) and in
+//! [`PrepareSolverBodies`](super::schedule::SolverSystems::PrepareSolverBodies) on. They are written before
+//! and read after systems in [`SubstepSchedule`](super::schedule::SubstepSchedule) and in
 //! [`PreSubstep`](super::schedule::SolverSystems::PreSubstep) to
-//! [`PostSubstep`](super::schedule::SolverSystems::PostSubstep): what a system writes is what the solver
-//! continues from. In apps without such a system no body has them, and the solver does no more than
-//! without this module.
+//! [`PostSubstep`](super::schedule::SolverSystems::PostSubstep): the solver continues from the values that a
+//! system writes. In apps without these systems no body has the components, and they cost nothing.
 //!
 //! ```
 //! # use avian::{dynamics::solver::{schedule::SubstepSolverSystems, solver_body::SolverBody}, math::Vector, prelude::*};
@@ -54,12 +53,13 @@ use crate::{
 
 /// Velocity and displacement of an awake body within a step; see the [module](self).
 ///
-/// Static and sleeping bodies have none. Computations take [`SolverBody::DUMMY`] for them, which is at rest.
+/// Static and sleeping bodies do not have this component. Computations use [`SolverBody::DUMMY`] for them, a
+/// body at rest.
 ///
-/// Poses are given as displacements since the start of the step, so that they are exact far from the origin.
-/// A change of them moves the body at the end of the step. The velocity of a kinematic body is that of its
-/// components again in the next step. A body whose values are not finite is put back, stopped and disabled
-/// with a warning.
+/// Poses are given as displacements since the start of the step, which are exact even far from the origin.
+/// Changing them moves the body at the end of the step. A kinematic body has the velocity of its components
+/// again in the next step. A body with values that are not finite is moved back, stopped and disabled with a
+/// warning.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Debug, Default)]
 pub struct SolverBody {
@@ -69,15 +69,15 @@ pub struct SolverBody {
     pub angular_velocity: AngularVector,
     /// The displacement of the centre of mass since the start of the step, in m along the world's axes.
     pub delta_position: Vector,
-    /// The rotation since the start of the step: that of the body is `delta_rotation * rotation`, with its
-    /// [`Rotation`] then.
+    /// The rotation since the start of the step. The body's rotation is `delta_rotation * rotation`, where
+    /// `rotation` is its [`Rotation`] at the start of the step.
     pub delta_rotation: Rotation,
-    /// What is known of the body in this step. Changes have no effect.
+    /// Properties of the body in this step. Changes have no effect.
     pub flags: SolverBodyFlags,
 }
 
 impl SolverBody {
-    /// The state of a body that does not move.
+    /// The state of an immovable body.
     pub const DUMMY: Self = Self {
         linear_velocity: Vector::ZERO,
         angular_velocity: NO_SPIN,
@@ -86,18 +86,19 @@ impl SolverBody {
         flags: SolverBodyFlags::empty(),
     };
 
-    /// The velocity in m/s of a point of the body, relative to the centre of mass and along the world's axes.
+    /// The velocity in m/s of a point of the body. The point is relative to the centre of mass, along the
+    /// world's axes.
     pub fn velocity_at_point(&self, point: Vector) -> Vector {
         let spin = angular_to_kernel(self.angular_velocity);
         self.linear_velocity + vector_from_kernel(spin.cross(vector_to_kernel(point)))
     }
 
-    /// Whether the gyroscopic torque turns the spin axis of the body. Never in 2D.
+    /// Whether the gyroscopic torque changes the body's rotation axis. Never in 2D.
     pub fn is_gyroscopic(&self) -> bool {
         self.flags.contains(SolverBodyFlags::GYROSCOPIC_MOTION)
     }
 
-    /// The state in a row.
+    /// The state of a row.
     fn of_row(row: &BodyRow, flags: SolverBodyFlags) -> Self {
         let ((v, w), (way, turn)) = (row.velocity(), row.delta());
         Self {
@@ -109,7 +110,7 @@ impl SolverBody {
         }
     }
 
-    /// Whether this is the state in a row.
+    /// Whether this is the state of a row.
     fn is_of_row(&self, row: &BodyRow) -> bool {
         let other = Self::of_row(row, self.flags);
         self.linear_velocity == other.linear_velocity
@@ -127,7 +128,7 @@ impl SolverBody {
     }
 }
 
-/// What is known of a body in a step: locked axes as in [`LockedAxes`], and two flags.
+/// Properties of a body in a step: locked axes as in [`LockedAxes`], and two flags.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Debug, Default, PartialEq)]
 #[repr(transparent)]
@@ -155,7 +156,7 @@ bitflags::bitflags! {
         const ALL_LOCKED = 0b111_111;
         /// The body is kinematic, not dynamic.
         const IS_KINEMATIC = 1 << 6;
-        /// The gyroscopic torque turns its spin axis.
+        /// The gyroscopic torque changes the body's rotation axis.
         const GYROSCOPIC_MOTION = 1 << 7;
     }
 }

@@ -1,10 +1,10 @@
-//! In 3D the inertia of a body turns with it.
+//! In 3D the inertia of a body rotates with the body.
 
 use super::{dim::locked_inertia, inertia::SolverBodyInertia};
 use crate::{dynamics::rigid_body::mass_properties::components::ComputedAngularInertia, math::Quaternion};
 
 impl SolverBodyInertia {
-    /// Recomputes the inverse inertia of a body from the one in its own frame, for a rotation.
+    /// Recomputes the inverse inertia of a body in world axes from its local inverse inertia and a rotation.
     pub fn update_effective_inv_angular_inertia(
         &mut self,
         computed_angular_inertia: &ComputedAngularInertia,

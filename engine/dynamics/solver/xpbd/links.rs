@@ -1,4 +1,4 @@
-//! Which bodies are held together by constraints that XPBD solves: they are in one island.
+//! Connects bodies with XPBD constraints into one island.
 
 use bevy_ecs::prelude::*;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -6,8 +6,8 @@ use std::sync::Mutex;
 
 use crate::dynamics::solver::constraint::ties::{FIRST_XPBD, Ties};
 
-/// The constraints that were prepared in the last step. Systems that prepare different types may run in any
-/// order, so they add to it without exclusive access.
+/// The constraints prepared in the last step. Systems that prepare different types may run in any order, so
+/// they add constraints without exclusive access.
 #[derive(Resource, Debug, Default)]
 pub struct Links {
     wanted: Mutex<Vec<(u32, Entity, [Entity; 2])>>,
@@ -15,7 +15,7 @@ pub struct Links {
 }
 
 impl Links {
-    /// The number of another type of constraints.
+    /// The number of the next type of constraints.
     pub(super) fn next_number(&self) -> u32 {
         FIRST_XPBD + self.types.fetch_add(1, Ordering::Relaxed)
     }
@@ -28,7 +28,7 @@ impl Links {
     }
 }
 
-/// Passes the constraints on to the table that connects bodies.
+/// Passes the constraints to the table of connected bodies.
 pub(super) fn note_links(mut links: ResMut<Links>, mut ties: ResMut<Ties>) {
     if let Ok(wanted) = links.bypass_change_detection().wanted.get_mut() {
         for (number, entity, ends) in wanted.drain(..) {

@@ -1,11 +1,13 @@
-//! Constraints of the app by extended position-based dynamics (XPBD), with the interface of Avian 0.7.
+//! Constraints of the app, solved by extended position-based dynamics (XPBD), with the interface of Avian
+//! 0.7.
 //!
-//! The engine's own joints are solved by its kernel. A constraint of the app can be so, too, with
-//! [`Constraint`](super::constraint::Constraint), which is faster and holds more. XPBD is for constraints
-//! that were written for Avian, and for those that are easier to say as a change of positions.
+//! The kernel solves the engine's own joints. It can also solve a constraint of the app, by
+//! [`Constraint`](super::constraint::Constraint), which is faster and bears higher loads. XPBD is for
+//! constraints that were written for Avian, and for constraints that are easier to express as a change of
+//! positions.
 //!
 //! A constraint is a component with [`EntityConstraint`](crate::dynamics::joints::EntityConstraint) and
-//! [`XpbdConstraint`], beside another one that holds its [`XpbdConstraintSolverData`], and two systems:
+//! [`XpbdConstraint`], a second component for its [`XpbdConstraintSolverData`], and two systems:
 //!
 //! ```
 //! # use avian::{
@@ -75,9 +77,9 @@
 //! # App::new().add_plugins((bevy_transform::TransformPlugin, PhysicsPlugins::default(), plugin));
 //! ```
 //!
-//! Each substep ends with these positions, and velocities are what moved the bodies there (Müller, Macklin et
-//! al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", 2020). Two bodies that a
-//! constraint holds are in one island: they sleep and wake together.
+//! Each substep ends at the positions given by the constraints, and velocities follow from the displacement
+//! (Müller, Macklin et al., "Detailed Rigid Body Simulation with Extended Position Based Dynamics", 2020).
+//! Two bodies with a common constraint are in one island: they sleep and wake together.
 
 #[cfg_attr(feature = "2d", path = "dim2/mod.rs")]
 #[cfg_attr(feature = "3d", path = "dim3/mod.rs")]
@@ -101,21 +103,21 @@ use crate::{
     math::{AngularVector, NO_SPIN, Scalar, Vector},
 };
 
-/// System sets of constraints that are solved by XPBD, in this order, between
+/// System sets of XPBD constraints, in this order, between
 /// [`Relax`](super::schedule::SubstepSolverSystems::Relax) and
 /// [`Damping`](super::schedule::SubstepSolverSystems::Damping) of
 /// [`SubstepSchedule`](super::schedule::SubstepSchedule).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum XpbdSolverSystems {
-    /// Joints that are solved by XPBD. The engine has none.
+    /// Joints solved by XPBD. The engine has none.
     SolveConstraints,
     /// Constraints of the app.
     SolveUserConstraints,
-    /// Velocities are updated by what moved the bodies.
+    /// Velocities are updated from the displacements caused by constraints.
     VelocityProjection,
 }
 
-/// What a constraint keeps between the substeps of a step.
+/// The data of a constraint that persists between the substeps of a step.
 pub trait XpbdConstraintSolverData {
     /// Sets the multipliers to zero, at the start of each substep.
     fn clear_lagrange_multipliers(&mut self) {}
@@ -136,20 +138,21 @@ pub trait XpbdConstraintSolverData {
     }
 }
 
-/// A constraint between bodies that is solved by changing their positions; see the [module](self).
+/// A constraint between bodies, solved by changing their positions; see the [module](self).
 pub trait XpbdConstraint<const ENTITY_COUNT: usize> {
-    /// What it keeps between substeps.
+    /// The data that persists between substeps.
     type SolverData: XpbdConstraintSolverData;
 
-    /// Prepares for a step, before its first substep. The bodies are where the step begins.
+    /// Prepares the constraint for a step, before its first substep. The bodies are at their poses at the
+    /// start of the step.
     fn prepare(
         &mut self,
         bodies: [&RigidBodyQueryReadOnlyItem; ENTITY_COUNT],
         solver_data: &mut Self::SolverData,
     );
 
-    /// Changes the displacements of the bodies so that the constraint holds, in a substep of `dt` seconds.
-    /// Bodies that do not move are [`SolverBody::DUMMY`].
+    /// Changes the displacements of the bodies to satisfy the constraint, in a substep of `dt` seconds.
+    /// Immovable bodies are [`SolverBody::DUMMY`].
     fn solve(
         &mut self,
         bodies: [&mut SolverBody; ENTITY_COUNT],
@@ -173,8 +176,8 @@ pub trait XpbdConstraint<const ENTITY_COUNT: usize> {
 /// The change Δλ of a multiplier λ: Δλ = (−C − α̃ λ) / (Σ wᵢ |∇Cᵢ|² + α̃) with α̃ = α / dt².
 ///
 /// `c` is the error C of the constraint in m or rad, `gradients` its gradients ∇Cᵢ, `inverse_masses` the wᵢ
-/// and `compliance` the α in m/N or rad/(N·m). 0 where nothing can move: where the denominator is zero or not
-/// finite. Gradients without a mass, and masses without a gradient, are ignored.
+/// and `compliance` the α in m/N or rad/(N·m). The result is 0 if nothing can move: if the denominator is
+/// zero or not finite. Gradients without a mass, and masses without a gradient, are ignored.
 pub fn compute_lagrange_update_with_gradients(
     lagrange: Scalar,
     c: Scalar,
@@ -188,7 +191,7 @@ pub fn compute_lagrange_update_with_gradients(
     lagrange_update(lagrange, c, weights.sum(), compliance, dt)
 }
 
-/// As [`compute_lagrange_update_with_gradients`], for gradients of unit length.
+/// The same as [`compute_lagrange_update_with_gradients`], for gradients of unit length.
 pub fn compute_lagrange_update(
     lagrange: Scalar,
     c: Scalar,
@@ -200,7 +203,7 @@ pub fn compute_lagrange_update(
 }
 
 fn lagrange_update(lagrange: Scalar, c: Scalar, weight: Scalar, compliance: Scalar, dt: Scalar) -> Scalar {
-    // Without mass on either side there is nothing to be moved, however soft.
+    // Without inverse mass on either side nothing can move, at any softness.
     if !(weight > 0.0) {
         return 0.0;
     }
@@ -215,13 +218,13 @@ mod tests {
 
     #[test]
     fn an_update_closes_the_error() {
-        // Both are moved by their share of the error.
+        // Both bodies move by their share of the error.
         let update = compute_lagrange_update(0.0, 0.3, &[1.0, 0.5], 0.0, 0.01);
         assert!((update + 0.2).abs() < 1e-6);
         let gradients = [Vector::X, Vector::NEG_X];
         let same = compute_lagrange_update_with_gradients(0.0, 0.3, &gradients, &[1.0, 0.5], 0.0, 0.01);
         assert_eq!(update, same);
-        // What is soft settles at λ = −C / α̃.
+        // A soft constraint settles at λ = −C / α̃.
         let settled = compute_lagrange_update(-0.3 / 4.0, 0.3, &[1.0], 1.0, 0.5);
         assert!(settled.abs() < 1e-6);
     }

@@ -1,4 +1,4 @@
-//! The plugin of constraints that are solved by XPBD.
+//! The plugin of XPBD constraints.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -18,8 +18,7 @@ use crate::{
     step::{self, Stage},
 };
 
-/// Lets constraints of the app be solved by XPBD; see the [module](super). Without such constraints it
-/// does nothing.
+/// Enables XPBD constraints of the app; see the [module](super). Without these constraints it does nothing.
 ///
 /// The engine's joints need neither this plugin nor XPBD.
 pub struct XpbdSolverPlugin;

@@ -6,11 +6,12 @@ use crate::{
     math::{Scalar, SymmetricTensor, Vector},
 };
 
-/// Moves two bodies by impulses at points of them.
+/// Moves two bodies by impulses at points of the bodies.
 ///
 /// `r1` and `r2` are the vectors in m from the bodies' centres of mass to the points, along the world's axes.
 pub trait PositionConstraint {
-    /// Moves and turns the first body by an impulse in kg·m at `r1`, and the second by its opposite at `r2`.
+    /// Moves and rotates the first body by an impulse in kg·m at `r1`, and the second by the opposite impulse
+    /// at `r2`.
     #[expect(clippy::too_many_arguments, reason = "the interface is Avian's")]
     fn apply_positional_impulse(
         &self,
@@ -29,8 +30,8 @@ pub trait PositionConstraint {
         }
     }
 
-    /// The displacement of the point at `r` along the unit vector `n` per impulse along it, in 1/kg:
-    /// 1/m + (r × n) · I⁻¹ (r × n).
+    /// The inverse effective mass in 1/kg: the displacement of the point at `r` along the unit vector `n` per
+    /// impulse along `n`, 1/m + (r × n) · I⁻¹ (r × n).
     fn compute_generalized_inverse_mass(
         &self,
         inverse_mass: Scalar,
@@ -41,8 +42,7 @@ pub trait PositionConstraint {
         inverse_mass + dim::inverse_moment(inverse_angular_inertia, dim::moment(r, n))
     }
 
-    /// The rotation by an impulse `p` in kg·m at `r`: in 2D an angle in rad, in 3D a unit
-    /// quaternion.
+    /// The rotation caused by an impulse `p` in kg·m at `r`: in 2D an angle in rad, in 3D a unit quaternion.
     fn get_delta_rot(inverse_angular_inertia: SymmetricTensor, r: Vector, p: Vector) -> AngularDelta {
         dim::delta_of(dim::rotation_vector(inverse_angular_inertia, dim::moment(r, p)))
     }

@@ -1,4 +1,4 @@
-//! From the displacements by constraints to velocities.
+//! Converts the displacements by constraints to velocities.
 
 use bevy_ecs::{
     prelude::*,
@@ -23,10 +23,10 @@ type Moved<'w, 's> = Query<
     (&'static mut SolverBody, &'static mut PreSolveDeltaPosition, &'static mut PreSolveDeltaRotation),
 >;
 
-/// Bodies without a place for their displacement.
+/// Bodies without components for their displacement.
 type Lacking<'w, 's> = Query<'w, 's, Entity, (With<SolverBody>, Without<PreSolveDeltaPosition>)>;
 
-/// Queries of bodies, while constraints of the app are in the schedule.
+/// Queries of bodies, used while the schedule contains constraints of the app.
 #[derive(Resource)]
 pub(super) struct PositionSolve {
     moved: SystemState<(Moved<'static, 'static>, Res<'static, Time>)>,
@@ -50,7 +50,7 @@ fn is_used(world: &World) -> bool {
         || has_systems(XpbdSolverSystems::SolveConstraints.intern())
 }
 
-/// Before the substeps: gives bodies a place for their displacement, if there are constraints.
+/// Before the substeps: gives bodies components for their displacement, if there are constraints.
 pub(super) fn prepare_position_solve(world: &mut World) {
     if !is_used(world) {
         world.remove_resource::<PositionSolve>();
@@ -66,7 +66,7 @@ pub(super) fn prepare_position_solve(world: &mut World) {
     });
 }
 
-/// Before constraints move bodies: stores where they are.
+/// Before constraints move bodies: stores the displacements.
 pub(super) fn record_pre_solve(world: &mut World) {
     if !world.contains_resource::<PositionSolve>() {
         return;
@@ -79,7 +79,7 @@ pub(super) fn record_pre_solve(world: &mut World) {
     });
 }
 
-/// After constraints have moved bodies: adds what moved them there to their velocities.
+/// After constraints have moved bodies: adds the velocities of these displacements.
 pub(super) fn project_velocities(world: &mut World) {
     if !world.contains_resource::<PositionSolve>() {
         return;

@@ -19,16 +19,16 @@ use crate::{
 /// Bodies in the simulation.
 type Known<'w, 's> = Query<'w, 's, (), (With<RigidBody>, Without<RigidBodyDisabled>)>;
 
-/// Their state, while they are awake.
+/// The states of awake bodies.
 type States<'w, 's> =
     Query<'w, 's, (&'static mut SolverBody, &'static SolverBodyInertia), Without<RigidBodyDisabled>>;
 
-/// Prepares the constraints of a type for a step. To be added to
+/// Prepares the constraints of a type for a step. Add it to
 /// [`SolverSystems::PrepareJoints`](crate::dynamics::solver::schedule::SolverSystems::PrepareJoints) of
 /// [`PhysicsSchedule`](crate::schedule::PhysicsSchedule).
 ///
-/// Constraints with [`JointDisabled`], and those between entities that are no bodies of the simulation, are
-/// left out. Bodies that a constraint holds are in one island from the next step on.
+/// Constraints with [`JointDisabled`], and constraints between entities that are not simulated bodies, are
+/// skipped. Bodies with a common constraint are in one island from the next step on.
 pub fn prepare_xpbd_joint<C: Component<Mutability = Mutable> + EntityConstraint<2> + XpbdConstraint<2>>(
     bodies: Query<RigidBodyQueryReadOnly, Without<RigidBodyDisabled>>,
     mut joints: Query<(Entity, &mut C, &mut C::SolverData), Without<JointDisabled>>,
@@ -52,12 +52,12 @@ pub fn prepare_xpbd_joint<C: Component<Mutability = Mutable> + EntityConstraint<
     }
 }
 
-/// Solves the constraints of a type in a substep. To be added to
+/// Solves the constraints of a type in a substep. Add it to
 /// [`XpbdSolverSystems::SolveUserConstraints`](super::XpbdSolverSystems::SolveUserConstraints) of
 /// [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule).
 ///
-/// They are solved one after the other. Of two bodies with different
-/// [`Dominance`](crate::dynamics::rigid_body::Dominance) only the lower one is moved.
+/// Constraints are solved one after the other. Of two bodies with different
+/// [`Dominance`](crate::dynamics::rigid_body::Dominance), only the body with the lower value moves.
 pub fn solve_xpbd_joint<C: Component<Mutability = Mutable> + EntityConstraint<2> + XpbdConstraint<2>>(
     mut bodies: States,
     known: Known,
@@ -79,7 +79,7 @@ pub fn solve_xpbd_joint<C: Component<Mutability = Mutable> + EntityConstraint<2>
     }
 }
 
-/// Applies the impulses of the motors of a type of constraints from the last substep. To be added to
+/// Applies the motor impulses of a type of constraints from the last substep. Add it to
 /// [`SubstepSolverSystems::WarmStart`](crate::dynamics::solver::schedule::SubstepSolverSystems::WarmStart) of
 /// [`SubstepSchedule`](crate::dynamics::solver::schedule::SubstepSchedule).
 pub fn warm_start_xpbd_motors<C: Component<Mutability = Mutable> + EntityConstraint<2> + XpbdConstraint<2>>(
@@ -100,7 +100,7 @@ pub fn warm_start_xpbd_motors<C: Component<Mutability = Mutable> + EntityConstra
     }
 }
 
-/// Calls a function with the states of two bodies, if one is awake. The other may be at rest.
+/// Calls a function with the states of two bodies if at least one body is awake.
 fn with_bodies(
     [a, b]: [Entity; 2],
     bodies: &mut States,

@@ -2,9 +2,9 @@
 //! "Proximity Queries and Penetration Depth Computation on 3D Game Objects", 2001).
 //!
 //! A polytope within the Minkowski difference A − B grows toward the surface where its own surface is nearest
-//! to the origin. That distance is a lower bound of the depth, and the difference's support along the face's
-//! normal is an upper bound. Both meet at the least depth of all directions, however many others are the
-//! least near themselves.
+//! to the origin. The distance of this face is a lower bound of the depth, and the difference's support along
+//! the face's normal is an upper bound. Both converge to the global minimum of the depth, however many local
+//! minima there are.
 
 use super::super::gjk::Core;
 use super::super::view::MatrixPose;
@@ -13,9 +13,10 @@ use crate::tuning::manifold::{FLAT, SAME};
 
 type Wide = Vector<f64>;
 
-/// It also ends at this many corners, which only shapes about as deep along very many directions have.
+/// Maximum number of corners, at which the search also ends. Only shapes with about the same depth along very
+/// many directions reach it.
 const MAX_CORNERS: usize = 96;
-/// A closed surface of triangles has two for each corner, less four.
+/// A closed surface of triangles has two triangles for each corner, less four.
 const MAX_FACES: usize = 2 * MAX_CORNERS - 4;
 /// A triangle of the polytope, counter-clockwise from outside.
 #[derive(Clone, Copy)]
@@ -62,7 +63,7 @@ pub(super) fn shallowest<A: Core, B: Core>(a: &A, b: &B, frame: &MatrixPose) -> 
 impl Polytope {
     /// A tetrahedron of points far apart.
     fn start(support: &impl Fn(Wide) -> Wide) -> Option<Self> {
-        // Of the points farthest along a line, the one farther from a given point.
+        // The end of the extent along a direction that is farther from a given point.
         let farther = |direction: Wide, from: Wide| {
             let ends = [support(direction), support(-direction)];
             let [over, under] = ends.map(|p| (p - from).dot(direction).abs());
@@ -113,7 +114,7 @@ impl Polytope {
         self.face_count += 1;
     }
 
-    /// The face nearest to the origin; of faces that the origin is outside of, the farthest.
+    /// The face nearest to the origin; if the origin is outside of some faces, the farthest of these.
     fn nearest(&self) -> Face {
         let mut nearest = 0;
         for (i, face) in self.faces[..self.face_count].iter().enumerate() {
@@ -124,11 +125,11 @@ impl Polytope {
         self.faces[nearest]
     }
 
-    /// Adds a corner: the faces that it sees give way to a fan from it to their outline. Returns whether
-    /// there was room, and a face to replace.
+    /// Adds a corner: a fan from the corner to the outline of the faces that it sees replaces these faces.
+    /// Returns whether there was room, and a face to replace.
     fn add(&mut self, corner: Wide) -> bool {
         let margin = FLAT * self.size;
-        // A face that gives way adds at most three sides.
+        // A replaced face adds at most three sides.
         let mut outline = [[0; 2]; 3 * MAX_FACES];
         let (mut sides, mut kept) = (0, 0);
         let mut put = |side: [u8; 2]| {

@@ -1,10 +1,10 @@
-//! Cylinders, cones and frusta against everything else.
+//! Cylinders, cones and frusta against all other shapes.
 //!
-//! The separating axis is looked for among planes first: faces of a polyhedron, and ends of frusta. A plane
-//! whose lowest point is in the region where both parts face each other is the best axis, and its region
-//! gives up to four points. Else the axis is found by closest points (GJK). Shapes that overlap are first
-//! moved apart along the best axis so far, which is repeated until the axis stays; this takes two or three
-//! rounds where they overlap little.
+//! Planes are tested first as separating axes: faces of a polyhedron, and ends of frusta. A plane whose
+//! lowest point is in the region where both parts face each other is the best axis, and its region gives up
+//! to four points. Otherwise the axis is found by closest points (GJK). Overlapping shapes are first moved
+//! apart along the best axis so far, and this is repeated until the axis stays; with little overlap this
+//! takes two or three rounds.
 
 mod deep;
 mod patch;
@@ -35,7 +35,7 @@ const PLANE_B: u8 = 2;
 /// [`FeatureCache::kind`] of any other axis, which is in `a` and `b`.
 const LINE: u8 = 3;
 
-/// The name of the point of a contact that has one.
+/// The name of the point of a contact with a single point.
 const SINGLE: u32 = 15 << 16;
 
 /// An axis between the shapes.
@@ -45,7 +45,7 @@ enum Axis {
     PlaneA(usize),
     /// An end of B.
     PlaneB(usize),
-    /// Any other.
+    /// Any other axis.
     Line,
 }
 
@@ -88,7 +88,7 @@ fn collide<A: ShapeFeatures>(a: &A, b: &Curved, input: PairInput, out: &mut Loca
     }
 }
 
-/// The contact of one face of a polyhedron, that with the given normal, and a frustum: its points over the
+/// The contact of a polyhedron's face with the given normal and a frustum: the frustum's points over the
 /// face, if any.
 pub(super) fn collide_face(a: &View, normal: Vector, b: &Curved, input: PairInput, out: &mut LocalManifold) {
     let Some(face) = (0..a.faces.len()).find(|i| a.faces[*i].normal.dot(normal) > FACING) else { return };
@@ -100,7 +100,7 @@ pub(super) fn collide_face(a: &View, normal: Vector, b: &Curved, input: PairInpu
         return;
     }
     pair.build_plane(&found, &mut 0, out);
-    // What is deep under a face need not be over it.
+    // A shape deep under a face need not be over it.
     if out.count == 0 && found.separation < -DEEP * pair.smaller {
         pair.search(out);
     }
@@ -140,7 +140,7 @@ pub(super) fn ball(a: &Curved, &Ball { radius }: &Ball, input: PairInput, out: &
     out.radii = [own, radius];
 }
 
-/// Takes at most four points of a region.
+/// Stores at most four points of a region.
 fn take(region: &Region, out: &mut LocalManifold) {
     out.normal = region.normal;
     keep::<false>(region.candidates.as_slice(), out);
@@ -335,9 +335,9 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         out.radii = [self.a.rolling(n), self.b.rolling(down)];
     }
 
-    /// Fills the manifold from an axis that is no plane: the points of two lines side by side, or one
-    /// point. `witness` are the nearest points, if they are known. Returns whether the points are as near
-    /// as the axis says.
+    /// Fills the manifold from an axis that is no plane: the points of two lines side by side, or one point.
+    /// `witness` are the nearest points, if they are known. Returns whether the points are as near as the
+    /// separation along the axis.
     fn build_line(&self, found: &Found, witness: Option<[Vector; 2]>, out: &mut LocalManifold) -> bool {
         let n = found.normal;
         let mut region = self.region(found, 0);
@@ -400,7 +400,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         Some(if normal.dot(between) < 0.0 { -normal } else { normal })
     }
 
-    /// The middle of a manifold's points: on A's core and on that of B.
+    /// The middle of a manifold's points, on A's core and on B's core.
     fn middle(&self, out: &LocalManifold) -> Option<[Vector; 2]> {
         if out.count == 0 {
             return None;
@@ -412,8 +412,8 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         Some(ends.map(|sum| sum * (1.0 / out.count as f32)))
     }
 
-    /// Whether no axis is clearly less deep, by a point of each core. If the ball of a radius about a point
-    /// of B is within A, all axes are at least as deep as that, and the other way around.
+    /// Whether no axis is clearly less deep, tested with a point of each core. If a ball about a point of B
+    /// lies within A, all axes are at least as deep as its radius; the same holds for a point of A within B.
     fn is_best(&self, found: &Found, points: Option<[Vector; 2]>) -> bool {
         let sure = found.separation + KEPT * self.smaller;
         sure >= 0.0
@@ -424,7 +424,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
     }
 
     /// Whether the point of one core that is farthest along an axis lies within the other core. Then they
-    /// overlap, and need not be looked at for a distance.
+    /// overlap, and no distance query is needed.
     fn surely_overlaps(&self, along: &Found) -> bool {
         if !(along.separation < 0.0) {
             return false;
@@ -437,8 +437,8 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         self.a.depth_of(self.b_in_a.point(of_b)) > 0.0 || is_in_b()
     }
 
-    /// The axis that separates the cores best, and the nearest points. Where cores overlap, there may be
-    /// several that are the best near themselves.
+    /// The axis that separates the cores best, and the nearest points. Where cores overlap, several axes may
+    /// be local optima.
     fn refine_all(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
         let near = self.refine(start);
         if self.is_best(&near.0, near.1) {
@@ -450,7 +450,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         if all.0.separation > near.0.separation { all } else { near }
     }
 
-    /// The axis that separates the cores best, near a given one, and the nearest points.
+    /// The axis near a given axis that separates the cores best, and the nearest points.
     fn refine(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
         let apart = DEEP * self.smaller;
         if !self.surely_overlaps(start)
@@ -472,7 +472,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
             };
             let found = self.separation(closest.normal);
             let gain = found - best.0.separation;
-            // Moved along another direction, the nearest points are not across from each other.
+            // Moved along another direction, the nearest points are not opposite each other.
             let aside = (closest.normal - normal).length() * push;
             let points = Some([closest.a, closest.b - normal * push]);
             if gain >= -ROUNDING * self.smaller {
@@ -491,7 +491,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
     }
 }
 
-/// A direction in two bytes: its place on an octahedron that is unfolded to a square.
+/// A direction in two bytes: its position on an octahedron unfolded to a square.
 fn bytes_of(normal: Vector) -> [u8; 2] {
     let size = normal.x.abs() + normal.y.abs() + normal.z.abs();
     let (x, y) = (normal.x / size, normal.y / size);

@@ -1,9 +1,9 @@
 //! The contact region of two plane parts of surfaces that face each other, at least one of them round.
 //!
-//! Circles are exact: the corners of a region are corners of the one part inside the other, crossings of a
-//! side and a circle, and four points of a circle, a quarter turn apart. These have the names of what makes
-//! them. A full circle stands on four points that keep their places in the frame of the other shape, so that
-//! nothing moves while a cylinder turns.
+//! Circles are exact: the corners of a region are corners of one part inside the other, crossings of a side
+//! and a circle, and four points of a circle, a quarter turn apart. Each point is named after its features. A
+//! full circle stands on four points that keep their positions in the other shape's frame, so that no point
+//! moves while a cylinder turns.
 
 use super::super::clip::clip_line;
 use super::super::reduce::{Candidates, MAX_CANDIDATES};
@@ -23,7 +23,7 @@ pub(super) enum Patch<'a> {
     Line([Vector; 2]),
 }
 
-/// A circle and what is in it.
+/// A circle with its interior.
 #[derive(Clone, Copy)]
 pub(super) struct Disc {
     pub center: Vector,
@@ -43,8 +43,8 @@ pub(super) struct Face<'a> {
     pub offset: f32,
 }
 
-/// Where the four points of a circle are, from step to step: 0 if it is not known, else 1 and a share of
-/// 255 of a turn.
+/// The angle of the four points of a circle, kept from step to step: 0 if unknown, otherwise 1 plus the
+/// number of 255ths of a turn.
 pub(super) type Phase = u8;
 
 /// The names of points; a number of up to 16 bits is added.
@@ -73,7 +73,7 @@ pub(super) struct Region {
     pub candidates: Candidates<MAX_CANDIDATES>,
     /// The least separation of the cores, of all points.
     pub least: f32,
-    /// Points deeper than this are beyond what crosses there.
+    /// Points deeper than this lie beyond the overlap, and are dropped.
     pub deepest: f32,
 }
 
@@ -115,7 +115,7 @@ impl Region {
         }
     }
 
-    /// The points of a plane and a part, the plane being A.
+    /// The points of a part over a plane, where the plane is A.
     pub fn fill_plane(&mut self, b: &Patch) {
         let normal = self.normal;
         match b {
@@ -137,7 +137,7 @@ impl Region {
     }
 
     /// The four points of a circle over a plane with a normal across it, with their numbers. One of them is
-    /// at the point nearest to the plane, or close to that. `of_a` tells that the circle is A's.
+    /// at or close to the point nearest to the plane. `of_a` tells that the circle is A's.
     fn quarters(&mut self, disc: &Disc, hint: &Disc, plane: Vector, of_a: bool) -> [(u32, Vector); 4] {
         let (u, v) = disc.frame(hint.hint);
         // The distance to the plane along the normal falls this way.
@@ -202,7 +202,7 @@ impl Region {
         let (n, w) = (self.normal, disc.normal);
         let rise = n.dot(w);
         let reach = disc.radius + self.margin();
-        // Where a corner is over the disc's plane, and the distance there.
+        // The projection of a corner onto the disc's plane along the normal, and the distance there.
         let over = |p: Vector| {
             let height = (disc.center - p).dot(w) / rise;
             (p + n * height - disc.center, height)
@@ -255,8 +255,8 @@ impl Region {
 
     /// Two circles.
     fn discs(&mut self, a: &Disc, b: &Disc) {
-        // The points of the smaller circle, if the other one has them all, else those of both and
-        // their crossings.
+        // The points of the smaller circle if the other circle contains them all, otherwise the points of
+        // both and their crossings.
         let a_first = a.radius <= b.radius;
         let first = self.circle_in_disc(a, b, a_first);
         if first == 4 {
@@ -268,7 +268,8 @@ impl Region {
         }
     }
 
-    /// Adds the points of one circle, A's if `of_a`, that are over the other, and returns their number.
+    /// Adds the points of one circle, A's if `of_a`, that are over the other circle, and returns their
+    /// number.
     fn circle_in_disc(&mut self, a: &Disc, b: &Disc, of_a: bool) -> usize {
         let (own, other) = if of_a { (a, b) } else { (b, a) };
         let (n, rise) = (self.normal, other.normal.dot(self.normal));
@@ -286,7 +287,7 @@ impl Region {
         inside
     }
 
-    /// Adds where two circles cross, as seen along the normal.
+    /// Adds the points where two circles cross, as seen along the normal.
     fn crossings(&mut self, a: &Disc, b: &Disc) {
         let n = self.normal;
         let offset = b.center - a.center;
@@ -306,7 +307,7 @@ impl Region {
         }
     }
 
-    /// Adds two lines across the normal that run side by side: the ends of the range in which they do.
+    /// Adds the points of two lines across the normal: the ends of the range in which they run side by side.
     /// `false` if they do not.
     pub fn parallel_lines(&mut self, a: &[Vector; 2], b: &[Vector; 2]) -> bool {
         let lines = Lines::new(a[0], a[1] - a[0], *b, b[1] - b[0]);
@@ -329,7 +330,7 @@ impl Region {
     }
 }
 
-/// A direction of the plane, and it turned by one, two and three quarters.
+/// A direction of the plane, and the same direction turned by one, two and three quarters.
 fn quarter_turns([x, y]: [f32; 2]) -> [[f32; 2]; 4] {
     [[x, y], [-y, x], [-x, -y], [y, -x]]
 }

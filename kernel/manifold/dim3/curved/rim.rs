@@ -1,4 +1,4 @@
-//! Where the rim of a rocking disc will touch.
+//! The point where the rim of a rocking disc will touch.
 //!
 //! A disc that leans by a small angle α stands on one point of its rim, which runs along the rim much faster
 //! than the disc rocks: by 1/α times the angle. Solver rows keep the arms of a contact for a step, and an arm
@@ -13,12 +13,12 @@ use crate::tuning::contact::MOST_WAY;
 use crate::tuning::manifold::{ALIKE, ROLLING};
 use crate::tuning::sweeps::LAG;
 
-/// Moves points on the lowest place of a rim, up to `near` apart, to where that will be once B has turned by
-/// `turn` against A, a rotation vector in world axes. `out` is the contact of the shapes, `rotation_a` that
-/// of A in the world, `pose_b_in_a` where B is in A's frame.
+/// Moves points at the lowest point of a rim, up to `near` apart, to the lowest point after B has turned by
+/// `turn` relative to A, a rotation vector in world axes. `out` is the contact of the shapes, `rotation_a`
+/// A's rotation in the world, `pose_b_in_a` B's pose in A's frame.
 ///
 /// Returns how far the surfaces may move against each other, in metres, until the points lag behind; infinity
-/// if there is no such point.
+/// if no point is moved.
 pub fn midstep_rims(
     shapes: [&Shape; 2],
     rotation_a: Rot,
@@ -46,9 +46,9 @@ pub fn midstep_rims(
 struct Rim {
     /// The lowest point.
     lowest: Vector,
-    /// How far the lowest place runs in half a step.
+    /// The shift of the lowest point in half a step.
     shift: Vector,
-    /// How much higher the new place is now.
+    /// The present height of the shifted point above the lowest point.
     rise: f32,
     /// The radius, or 0 if the shape does not lean on its rim.
     radius: f32,

@@ -1,5 +1,5 @@
-//! The features of both shapes that contacts are made of: planes, the part that faces the other shape, and
-//! lines on the side.
+//! The features of both shapes for contacts: planes, the part that faces the other shape, and lines on the
+//! side.
 
 use super::super::clip;
 use super::super::gjk::Core;
@@ -21,7 +21,7 @@ pub(super) trait ShapeFeatures: Core {
     fn plane(&self, plane: usize) -> (Vector, f32);
     /// The part of the surface in a plane.
     fn part(&self, plane: usize) -> Patch<'_>;
-    /// The part that faces a direction most, of those at the farthest point.
+    /// The part at the farthest point that faces a direction most.
     fn facing(&self, direction: Vector) -> Patch<'_>;
     /// The axis of a cylinder, or of a segment with a radius.
     fn axis(&self) -> Option<[Vector; 2]>;
@@ -176,8 +176,8 @@ fn side_line(shape: &Curved, around: Vector) -> [Vector; 2] {
     [0, 1].map(|end| around * shape.radius_of(end) + Vector::Y * shape.height_of(end))
 }
 
-/// The part of a frustum that faces a direction of its own frame most, of those at the farthest point; in
-/// the outer frame.
+/// The part of a frustum at the farthest point that faces a direction of its own frame most, in the outer
+/// frame.
 pub(super) fn facing<'a>(shape: &'a Curved, direction: Vector, frame: &MatrixPose) -> Patch<'a> {
     moved(shape.facing(direction), frame)
 }

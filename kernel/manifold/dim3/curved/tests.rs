@@ -1,4 +1,4 @@
-//! Frusta against the best of many directions, and where their points are.
+//! Frusta against the best of many directions, and the positions of their points.
 
 use super::super::tests::{bounded, deepest, fresh, pose, rotation, scaled, v, vector};
 use super::super::view::with_view;
@@ -88,15 +88,15 @@ fn extent(shape: &Shape) -> f32 {
     extent
 }
 
-/// How much deeper than the best axis the found one may be: what planes are preferred by, how sure the search
-/// is, the share of the depth at which it ends, and the rounding of positions of a metre or two.
+/// How much deeper than the best axis the found axis may be: the preference for planes, the accuracy of the
+/// search, the share of the depth at which it ends, and the rounding of positions of a metre or two.
 fn allowed(a: &Shape, b: &Shape, best: f32) -> f32 {
     KEPT * extent(a).min(extent(b)) + SAME * (-best).max(0.0) + 1.0e-4
 }
 
-/// How far points may be from where the axis has them: an axis is exact, and a region ends, to within a
-/// thousandth of the smaller shape. A plane that lacks its nearest point gets one of an axis up to the
-/// preference of planes farther out.
+/// Tolerance of the points' positions along the axis: an axis is exact, and a region ends, to within a
+/// thousandth of the smaller shape. A plane that lacks its nearest point gets the point of an axis that is
+/// farther out by up to the preference for planes.
 fn inexact(a: &Shape, b: &Shape) -> f32 {
     2.0 * MARGIN * extent(a).min(extent(b)) + 1.0e-4
 }
@@ -183,7 +183,7 @@ proptest! {
         let m = fresh(&ground, &shape, &pose, 0.05);
         prop_assert_eq!(m.count > 0, lowest.y <= 0.05);
         if m.count > 0 {
-            // The points of a circle stay while one is nearly the lowest.
+            // The points of a circle stay while one of them is nearly the lowest.
             prop_assert!((deepest(&m) - lowest.y).abs() < 2.0 * ALIKE + 1e-5, "{} {}", deepest(&m), lowest.y);
         } else {
             prop_assert!((m.gap - lowest.y).abs() < 1e-5);
@@ -253,8 +253,8 @@ proptest! {
         let n = n * (1.0 / n.length());
         let [a, b] = bytes_of(n);
         let back = normal_of(FeatureCache { a, b, ..FeatureCache::NONE });
-        // Half a step of 1/127 both ways moves a point of the octahedron by √6/254, and that of the sphere by
-        // up to √3 as far.
+        // Half a step of 1/127 both ways moves a point of the octahedron by √6/254, and the point of the
+        // sphere by up to √3 as far.
         prop_assert!((back - n).length() < 18.0_f32.sqrt() / 254.0 + 1e-4, "{n:?} {back:?}");
     }
 }
@@ -301,7 +301,7 @@ fn a_cylinder_over_the_rim_of_a_box_touches_where_both_are() {
     for p in m.points() {
         assert!(p.point.x < 1.002 && (p.point - v(1.2, p.point.y, 0.0)).length() < 0.502, "{p:?}");
     }
-    // A larger one holds the whole top.
+    // A larger box holds the whole top.
     let m = fresh(&shelf, &cylinder(2.0, 0.5), &Pose::new(v(0.1, 0.995, 0.2), Rot::IDENTITY), 0.02);
     assert_eq!(m.count, 4);
     assert!(
@@ -311,7 +311,7 @@ fn a_cylinder_over_the_rim_of_a_box_touches_where_both_are() {
     );
 }
 
-/// The side of a disc was taken for that of a cylinder with the smaller radius.
+/// The side of a disc was treated as the side of a cylinder with the smaller radius.
 #[test]
 fn issue_a_ball_within_the_larger_circle_of_a_flat_frustum_was_outside() {
     for (lower, upper) in [(0.2, 1.0), (1.0, 0.2), (0.0, 1.0)] {
@@ -378,7 +378,7 @@ fn hostile_frusta_give_no_contact() {
     }
 }
 
-/// Pairs for which an axis was taken that is the best near itself only.
+/// Pairs for which an axis was taken that is only a local optimum.
 #[test]
 fn axes_are_the_best_of_all() -> Result<(), TestCaseError> {
     let capsule = |a, b, radius| Shape::Capsule(Capsule { a, b, radius });
@@ -389,7 +389,8 @@ fn axes_are_the_best_of_all() -> Result<(), TestCaseError> {
     let at = v(0.16254582, 0.43978733, -0.1787359);
     let turn = rotation(0.7315438, 0.08169755, -0.4675439, 0.48946095);
     check(&cylinder(0.34532756, 0.94567895), &Shape::Segment(segment), &Pose::new(at, turn))?;
-    // The axes of both are nearly parallel, and the direction across both is not that between them.
+    // The axes of both are nearly parallel, and the direction across both differs from the direction between
+    // them.
     let long = capsule(v(-0.6836069, -0.95247144, 0.21732204), v(-0.2826874, 0.7144522, -0.4633216), 0.1);
     let turn = rotation(-0.17359795, -0.90071565, 0.12352323, -0.37857246);
     check(&cylinder(0.05, 0.05), &long, &Pose::new(Vector::ZERO, turn))?;

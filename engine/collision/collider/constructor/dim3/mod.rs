@@ -1,4 +1,4 @@
-//! The constructors of 3D colliders as data. `dim2` has those of 2D.
+//! The constructors of 3D colliders as data. See `dim2` for 2D.
 
 pub mod trimesh_builder;
 
@@ -32,9 +32,9 @@ pub(super) use bevy_mesh::Mesh3d as MeshComponent;
 /// - [`ColliderConstructorReady`](super::ColliderConstructorReady) is triggered after the collider
 ///   was inserted.
 /// - A constructor that is removed before its mesh is loaded has no effect.
-/// - If the entity has no mesh, one warning names it, and the constructor waits for one.
-/// - Values that make no shape, or a mesh that cannot be loaded: one warning names the entity, and the
-///   constructor is removed. There is no event then.
+/// - If the entity has no mesh, one warning names it, and the constructor waits for a mesh.
+/// - If the values make no shape, or the mesh cannot be loaded, one warning names the entity, and the
+///   constructor is removed without an event.
 ///
 /// [`ColliderConstructorHierarchy`](super::ColliderConstructorHierarchy) does the same for all descendants
 /// of an entity.
@@ -135,7 +135,7 @@ pub enum ColliderConstructor {
     Polyline {
         /// The ends of the segments.
         vertices: Vec<Vector>,
-        /// The segments; `None` from each vertex to the next.
+        /// The segments; `None` connects each vertex to the next.
         indices: Option<Vec<[u32; 2]>>,
     },
     /// [`Collider::trimesh`](crate::collision::collider::Collider::trimesh).
@@ -232,7 +232,7 @@ crate::type_path::type_path!(ColliderConstructor, "collision::collider::construc
 
 #[cfg(feature = "collider-from-mesh")]
 impl ColliderConstructor {
-    /// Whether it needs a mesh: it is made from one, or a part of it is.
+    /// Whether the constructor or a part of it needs a mesh.
     pub fn requires_mesh(&self) -> bool {
         match self {
             Self::TrimeshFromMesh

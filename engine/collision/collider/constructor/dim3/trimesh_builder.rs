@@ -16,10 +16,10 @@ use crate::{
     physics_transform::{Position, Rotation},
 };
 
-/// Number of subdivisions of curved shapes that none is set for.
+/// Default number of subdivisions of curved shapes.
 const DEFAULT_SUBDIVISIONS: NonZeroU32 = NonZeroU32::new(16).expect("16 is not zero");
 
-/// Maximum number of subdivisions: a ball has a triangle or two for each pair.
+/// Maximum number of subdivisions: a ball has one or two triangles for each pair of subdivisions.
 const MAX_SUBDIVISIONS: u32 = 1024;
 
 /// Makes a triangle mesh of the surface of a collider.
@@ -28,7 +28,7 @@ const MAX_SUBDIVISIONS: u32 = 1024;
 /// counter-clockwise from outside.
 ///
 /// Subdivisions are at least 3 around an axis, 2 from pole to pole, and at most 1024. Zero, or a number that
-/// does not fit, changes nothing and gives a warning.
+/// does not fit, is ignored with a warning.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -41,14 +41,14 @@ const MAX_SUBDIVISIONS: u32 = 1024;
 pub struct TrimeshBuilder {
     /// The shape.
     pub shape: SharedShape,
-    /// The place of the shape in the mesh, in metres.
+    /// The position of the shape in the mesh, in metres.
     pub position: Position,
     /// The rotation of the shape in the mesh.
     pub rotation: Rotation,
     /// Whether a compound with a part that has no surface is an error. Otherwise the part is left out.
     /// Default true.
     pub fail_on_compound_error: bool,
-    /// Number of subdivisions of shapes for which none is set. Default 16.
+    /// Number of subdivisions of shapes without their own setting. Default 16.
     pub fallback_subdivisions: NonZeroU32,
     /// Subdivisions of balls, around the Y axis and from pole to pole.
     pub sphere_subdivisions: Option<(NonZeroU32, NonZeroU32)>,
@@ -79,7 +79,7 @@ impl Trimesh {
     pub fn extend(&mut self, other: Trimesh) {
         let before = self.vertices.len() as u32;
         self.vertices.extend(other.vertices);
-        // Indices out of range stay so.
+        // Indices out of range stay out of range.
         self.indices.extend(other.indices.into_iter().map(|t| t.map(|i| i.saturating_add(before))));
     }
 }
@@ -87,7 +87,7 @@ impl Trimesh {
 /// Why a [`TrimeshBuilder`] made no mesh.
 #[derive(Debug, Error)]
 pub enum TrimeshBuilderError {
-    /// The shape has no surface of triangles, or one that does not end. Contains the type of the shape.
+    /// The shape has no surface of triangles, or an infinite surface. Contains the type of the shape.
     #[error("a shape of type {0} has no surface of triangles")]
     UnsupportedShape(String),
 }
@@ -108,7 +108,7 @@ impl TrimeshBuilder {
         }
     }
 
-    /// Sets the place of the shape in the mesh, in metres.
+    /// Sets the position of the shape in the mesh, in metres.
     pub fn translated(&mut self, position: impl Into<Position>) -> &mut Self {
         self.position = position.into();
         self
@@ -120,7 +120,7 @@ impl TrimeshBuilder {
         self
     }
 
-    /// Sets the subdivisions of shapes for which none is set.
+    /// Sets the subdivisions of shapes without their own setting.
     pub fn fallback_subdivisions(&mut self, subdivisions: impl TryInto<NonZeroU32>) -> &mut Self {
         if let Some(subdivisions) = count(subdivisions) {
             self.fallback_subdivisions = subdivisions;
@@ -241,7 +241,7 @@ impl TrimeshBuilder {
     }
 }
 
-/// A capsule whose segment is a point is a ball: parry's mesh of it has no direction.
+/// A capsule whose segment is a point is a ball: parry's capsule mesh would have no direction.
 fn mesh_of_capsule(capsule: &Capsule, theta: u32, phi: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
     if capsule.half_height() > 0.0 {
         return capsule.to_trimesh(theta, phi);
@@ -291,7 +291,7 @@ impl Collider {
 
 #[cfg(feature = "collider-from-mesh")]
 impl From<Trimesh> for bevy_mesh::Mesh {
-    /// A mesh of Bevy with positions and smooth normals. Triangles whose corners do not exist are left out.
+    /// A mesh of Bevy with positions and smooth normals. Triangles with missing corners are left out.
     fn from(mesh: Trimesh) -> Self {
         use crate::math::AsF32;
 
@@ -318,7 +318,7 @@ mod tests {
         mesh.indices.iter().map(|t| corner(t[0]).cross(corner(t[1])).dot(corner(t[2]))).sum::<Scalar>() / 6.0
     }
 
-    /// Whether each side of a triangle is that of another one, the other way round.
+    /// Whether each side of a triangle is also the side of another triangle, in the opposite direction.
     fn is_closed(mesh: &Trimesh) -> bool {
         let place = |i: u32| mesh.vertices[i as usize].to_array().map(|c| (c * 4096.0).round() as i64);
         let mut sides = BTreeMap::new();
@@ -343,7 +343,7 @@ mod tests {
             (Collider::round_cuboid(1.0, 2.0, 3.0, 0.1), 6.0, 1.0e-5),
             (Collider::convex_hull((0..8).map(corner).collect()).expect("a box"), 1.0, 1.0e-5),
             (Collider::voxels(Vector::ONE, &[[0, 0, 0].into(), [1, 0, 0].into()]), 2.0, 1.0e-5),
-            // What 16 subdivisions cut off is less than a tenth.
+            // 16 subdivisions cut off less than a tenth.
             (Collider::sphere(1.5), 4.5 * PI, 0.1),
             (Collider::capsule(0.5, 2.0), 0.5 * PI + PI / 6.0, 0.1),
             (

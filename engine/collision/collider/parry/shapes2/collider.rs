@@ -48,7 +48,7 @@ fn unit_mass_properties(collider: &Collider) -> MassProperties2d {
     }
 }
 
-/// The mass properties by parry, corrected for clockwise outlines, which have a negative area there.
+/// The mass properties by parry, corrected for clockwise outlines, which have a negative area in parry.
 fn foreign_mass_properties(shape: &SharedShape) -> MassProperties2d {
     let properties = shape.mass_properties(1.0);
     let mass = (properties.mass() as f32).abs();
@@ -98,14 +98,14 @@ impl Collider {
         })
     }
 
-    /// A rectangle around the origin with the given lengths of its sides.
+    /// A rectangle around the origin with the given side lengths.
     pub fn rectangle(x_length: Scalar, y_length: Scalar) -> Self {
         checked!("rectangle", |input| {
             cuboid_shape(Vector::new(input.length(x_length), input.length(y_length)) * 0.5).into()
         })
     }
 
-    /// A rectangle with `border_radius` around it: `x_length + 2 * border_radius` wide in all.
+    /// A rectangle with `border_radius` around it. Its total width is `x_length + 2 * border_radius`.
     pub fn round_rectangle(x_length: Scalar, y_length: Scalar, border_radius: Scalar) -> Self {
         checked!("round_rectangle", |input| {
             let half = Vector::new(input.length(x_length), input.length(y_length)) * 0.5;
@@ -113,7 +113,8 @@ impl Collider {
         })
     }
 
-    /// A triangle. The order of the corners does not matter. One without an area becomes its longest side.
+    /// A triangle. The order of the corners does not matter. A triangle without an area becomes its longest
+    /// side.
     pub fn triangle(a: Vector, b: Vector, c: Vector) -> Self {
         checked!("triangle", |input| {
             let [a, b, c] = [a, b, c].map(|p| input.point(p));
@@ -158,7 +159,7 @@ impl Collider {
         if area < 0.0 {
             points.reverse();
         }
-        // All turns are to the left, and add up to one round. A star has only left turns, too.
+        // All turns are to the left, and add up to one full turn. A star also has only left turns.
         let tolerance = -1.0e-6 * area.abs();
         let convex = corners(&points).all(|[a, b, c]| (b - a).perp_dot(c - b) >= tolerance);
         let upward = |v: Vector| v.y > 0.0 || v.y == 0.0 && v.x > 0.0;
@@ -184,7 +185,7 @@ impl Collider {
         checked!("convex_decomposition", |input| Self::decomposition(&vertices, indices, params, &mut input))
     }
 
-    /// The squares that an outline passes through, and those inside of it by `fill_mode`.
+    /// The squares that an outline passes through, and the squares inside it as set by `fill_mode`.
     pub fn voxelized_polyline(
         vertices: &[Vector],
         indices: &[[u32; 2]],
@@ -196,8 +197,8 @@ impl Collider {
         })
     }
 
-    /// A height field: heights at equal distances along the X axis, centred on the origin and `scale.x` wide
-    /// in total, times `scale.y`. At least two heights.
+    /// A height field: heights at equal distances along the X axis, times `scale.y`. It is centred on the
+    /// origin and `scale.x` wide in total. At least two heights.
     pub fn heightfield(heights: Vec<Scalar>, scale: Vector) -> Self {
         checked!("heightfield", |input| {
             if heights.len() < 2 {
@@ -209,7 +210,7 @@ impl Collider {
         })
     }
 
-    /// The polygon with an outline, decomposed into convex ones. An outline that crosses itself becomes
+    /// The polygon with an outline, decomposed into convex polygons. An outline that crosses itself becomes
     /// its convex hull.
     pub(in super::super) fn polygon(outline: Vec<Vector>, input: &mut Input) -> Self {
         let mut outline = usable_outline(outline, input);

@@ -23,8 +23,8 @@ impl EllipseColliderShape {
 }
 
 impl SupportMap for EllipseColliderShape {
-    /// With half axes h, the farthest point along d is h² d / |h d|: the circle's under the map that
-    /// stretches it into the ellipse.
+    /// With half axes h, the farthest point along d is h² d / |h d|: the support point of the unit circle
+    /// under the map that stretches it into the ellipse.
     fn local_support_point(&self, direction: Vector) -> Vector {
         let half = self.half();
         let stretched = half * direction;
@@ -34,7 +34,7 @@ impl SupportMap for EllipseColliderShape {
 }
 
 impl PolygonalFeatureMap for EllipseColliderShape {
-    /// A short piece of the tangent: parry clips edges, but a curve touches in one point.
+    /// A short piece of the tangent: parry clips edges, but a curve touches at one point.
     fn local_support_feature(&self, direction: Vector, out_feature: &mut PolygonalFeature) {
         let half = self.half();
         let point = self.local_support_point(direction);
@@ -134,7 +134,7 @@ impl RayCast for EllipseColliderShape {
             return None;
         }
         let outward = ((origin + direction * time) / half).normalize_or_zero();
-        // From inside the normal points back at the ray, as it does for parry's shapes.
+        // For a start inside, the normal points back at the ray, as with parry's shapes.
         let normal = if c > 0.0 { outward } else { -outward };
         Some(RayIntersection::new(time, normal, FeatureId::Face(0)))
     }
@@ -175,8 +175,8 @@ fn nearest_on_ellipse(half: Vector, point: Vector) -> Vector {
         if at(middle).length_squared() > 1.0 { low = middle } else { high = middle }
     }
     let mut unit = half * p / (squared + Vector::splat(high)).max(Vector::splat(Scalar::MIN_POSITIVE));
-    // On the longer axis and within the evolute the root is at the bound: the short component is what is
-    // left of the unit circle.
+    // On the longer axis and within the evolute the root is at the bound. The short component is then the
+    // remainder on the unit circle.
     let rest = |other: Scalar| (1.0 - other * other).max(0.0).sqrt();
     if unit.length_squared() < 0.999 {
         if half.x < half.y { unit.x = rest(unit.y) } else { unit.y = rest(unit.x) }

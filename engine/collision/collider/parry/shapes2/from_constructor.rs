@@ -1,4 +1,4 @@
-//! Colliders from constructors of 2D. `shapes3` has those of 3D.
+//! Colliders from constructors of 2D. See `shapes3` for 3D.
 
 use super::super::{
     Collider, ColliderError, TrimeshFlags, VhacdParameters,

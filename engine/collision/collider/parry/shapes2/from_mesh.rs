@@ -1,4 +1,4 @@
-//! 2D parts of colliders from meshes. `shapes3` has those of 3D.
+//! 2D parts of colliders from meshes. See `shapes3` for 3D.
 
 use super::super::{Collider, FillMode, VhacdParameters};
 use crate::math::{AdjustPrecision, Scalar, Vector};
@@ -10,14 +10,14 @@ pub(in super::super) fn point([x, y, _]: [f32; 3]) -> Vector {
     Vec2::new(x, y).adjust_precision()
 }
 
-/// What bounds the inside of triangles: the sides that one triangle has alone. Vertices at the same
-/// place are one.
+/// The boundary of triangles: the sides that belong to one triangle only. Vertices at the same place are
+/// merged.
 pub(in super::super) fn surface(
     vertices: Vec<Vector>,
     triangles: Vec<[u32; 3]>,
 ) -> (Vec<Vector>, Vec<[u32; 2]>) {
     let mut places = BTreeMap::new();
-    // Zero has two signs.
+    // Adding zero turns -0 into 0.
     let place = |v: &Vector| v.to_array().map(|c| (c + 0.0).to_bits());
     let joined: Vec<u32> =
         vertices.iter().zip(0..).map(|(vertex, i)| *places.entry(place(vertex)).or_insert(i)).collect();

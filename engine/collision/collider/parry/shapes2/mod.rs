@@ -1,4 +1,4 @@
-//! Constructors and shapes of 2D. `shapes3` has those of 3D.
+//! Constructors and shapes of 2D. See `shapes3` for 3D.
 
 mod collider;
 pub(super) mod ellipse;

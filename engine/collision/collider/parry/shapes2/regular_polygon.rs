@@ -43,8 +43,8 @@ impl RegularPolygonColliderShape {
         (0..self.count()).map(|i| self.corner(i))
     }
 
-    /// The place of a direction on the circle, counted in corners from the top: 1.5 is the middle of
-    /// the second side.
+    /// The position of a direction on the circle, counted in corners from the top: 1.5 is the middle of the
+    /// second side.
     fn place(&self, direction: Vector) -> Scalar {
         let angle = kernel::math::atan2(f64::from(-direction.x), f64::from(direction.y)) as Scalar;
         (angle / self.step()).rem_euclid(Scalar::from(self.count() as f32))
@@ -86,8 +86,8 @@ impl Shape for RegularPolygonColliderShape {
         Box::new(*self)
     }
 
-    /// With an even scale it stays regular: it is symmetric about y and, if the number of corners is even,
-    /// about x. Otherwise it becomes a convex polygon, if it has few enough corners.
+    /// With an even scale the polygon stays regular: it is symmetric about y and, if the number of corners is
+    /// even, about x. Otherwise it becomes a convex polygon, if it has few enough corners.
     fn scale_dyn(&self, scale: Vector, _: u32) -> Option<Box<dyn Shape>> {
         let is_symmetric = scale.y > 0.0 || self.count().is_multiple_of(2);
         if scale.x.abs() == scale.y.abs() && is_symmetric {

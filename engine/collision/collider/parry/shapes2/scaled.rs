@@ -1,4 +1,4 @@
-//! Scales of shapes that 2D has, or that differ from those of 3D. `shapes3` exports the same names.
+//! Scales of shapes that only 2D has, or that differ from 3D. `shapes3` exports the same names.
 
 use super::super::handedness::{stretched_border, turns_winding};
 use crate::math::Vector;
@@ -49,7 +49,7 @@ fn scaled_polygon(polygon: &ConvexPolygon, scale: Vector) -> Option<ConvexPolygo
     ConvexPolygon::from_convex_polyline_unmodified(corners)
 }
 
-/// Mirrored segments run backwards, so that they have the inside of an oriented line on the same hand.
+/// Mirrored segments are reversed, so that the inside of an oriented line stays on the same side of it.
 fn mirrored_polyline(line: &Polyline, signs: Vector) -> SharedShape {
     let vertices = line.vertices().iter().map(|v| *v * signs).collect();
     let mut segments = line.indices().to_vec();

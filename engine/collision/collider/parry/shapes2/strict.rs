@@ -1,4 +1,4 @@
-//! Constructors of 2D that refuse what their namesakes without `try_` repair. `shapes3` has those of 3D.
+//! 2D constructors that return an error where their namesakes without `try_` repair. See `shapes3` for 3D.
 
 use super::super::{
     Collider, ColliderError as Error, FillMode,

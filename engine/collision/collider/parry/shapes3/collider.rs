@@ -50,7 +50,7 @@ fn native_mass_properties(shape: &NativeShape) -> MassProperties3d {
     MassProperties3d::new_with_angular_inertia_tensor(p.mass, tensor, center)
 }
 
-/// The mass properties by parry, corrected for inward triangles, which have a negative volume there.
+/// The mass properties by parry, corrected for inward triangles, which have a negative volume in parry.
 fn foreign_mass_properties(shape: &SharedShape) -> MassProperties3d {
     let properties = shape.mass_properties(1.0);
     let mass = (properties.mass() as f32).abs();
@@ -97,7 +97,7 @@ impl Collider {
         checked!("sphere", |input| SharedShape::ball(input.length(radius)).into())
     }
 
-    /// A box around the origin with the given lengths of its sides.
+    /// A box around the origin with the given side lengths.
     pub fn cuboid(x_length: Scalar, y_length: Scalar, z_length: Scalar) -> Self {
         checked!("cuboid", |input| {
             let size = [x_length, y_length, z_length].map(|v| input.length(v));
@@ -105,7 +105,7 @@ impl Collider {
         })
     }
 
-    /// A box with `border_radius` around it: `x_length + 2 * border_radius` wide in all.
+    /// A box with `border_radius` around it. Its total width is `x_length + 2 * border_radius`.
     pub fn round_cuboid(x_length: Scalar, y_length: Scalar, z_length: Scalar, border_radius: Scalar) -> Self {
         checked!("round_cuboid", |input| {
             let [x, y, z] = [x_length, y_length, z_length].map(|v| input.length(v) * 0.5);
@@ -127,7 +127,7 @@ impl Collider {
         })
     }
 
-    /// A triangle: a surface without thickness. One without an area becomes its longest side.
+    /// A triangle: a surface without thickness. A triangle without an area becomes its longest side.
     pub fn triangle(a: Vector, b: Vector, c: Vector) -> Self {
         checked!("triangle", |input| {
             let [a, b, c] = [a, b, c].map(|p| input.point(p));
@@ -155,7 +155,7 @@ impl Collider {
         checked!("convex_decomposition", |input| Self::decomposition(&vertices, indices, &params, &mut input))
     }
 
-    /// The boxes that a surface passes through, and those inside of it by `fill_mode`.
+    /// The boxes that a surface passes through, and the boxes inside it as set by `fill_mode`.
     pub fn voxelized_trimesh(
         vertices: &[Vector],
         indices: &[[u32; 3]],
@@ -167,11 +167,11 @@ impl Collider {
         })
     }
 
-    /// A height field: heights on a grid over the XZ plane, centred on the origin, `scale.x` by `scale.z` in
-    /// total, times `scale.y`.
+    /// A height field: heights on a grid over the XZ plane, times `scale.y`. It is centred on the origin, and
+    /// `scale.x` by `scale.z` in total.
     ///
-    /// `heights[i][j]` is at place i along X and j along Z. At least two in each direction. If the inner
-    /// lists differ in length, the shortest one counts.
+    /// `heights[i][j]` is at place i along X and j along Z. At least two heights in each direction. If the
+    /// inner lists differ in length, the shortest one counts.
     pub fn heightfield(heights: Vec<Vec<Scalar>>, scale: Vector) -> Self {
         checked!("heightfield", |input| {
             let along_z = heights.iter().map(Vec::len).min().unwrap_or(0);
@@ -183,7 +183,7 @@ impl Collider {
             let lines = heights.iter().flat_map(|line| &line[..along_z]);
             let (data, factor) = input.heights(lines.copied(), scale.y);
             let scale = Vector::new(input.length(scale.x), factor, input.length(scale.z));
-            // Parry's rows run along Z and are stored by column: one list of ours after the other.
+            // Parry's rows run along Z and are stored by column: one inner list after the other.
             SharedShape::heightfield(Array2::new(along_z, along_x, data), scale).into()
         })
     }

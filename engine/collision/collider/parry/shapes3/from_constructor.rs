@@ -1,4 +1,4 @@
-//! Colliders from constructors of 3D. `shapes2` has those of 2D.
+//! Colliders from constructors of 3D. See `shapes2` for 2D.
 
 use super::super::{
     Collider, ColliderError, TrimeshFlags, VhacdParameters,

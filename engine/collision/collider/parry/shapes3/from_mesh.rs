@@ -1,4 +1,4 @@
-//! 3D parts of colliders from meshes. `shapes2` has those of 2D.
+//! 3D parts of colliders from meshes. See `shapes2` for 2D.
 
 use super::super::{Collider, FillMode, VhacdParameters};
 use crate::math::{AdjustPrecision, Scalar, Vector};
@@ -9,7 +9,7 @@ pub(in super::super) fn point(position: [f32; 3]) -> Vector {
     Vec3::from_array(position).adjust_precision()
 }
 
-/// What bounds the inside of triangles: they do.
+/// The boundary of a mesh: its triangles.
 pub(in super::super) fn surface(
     vertices: Vec<Vector>,
     triangles: Vec<[u32; 3]>,

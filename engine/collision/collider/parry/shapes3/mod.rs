@@ -1,4 +1,4 @@
-//! Constructors of 3D. `shapes2` has those of 2D, and its shapes.
+//! Constructors of 3D. `shapes2` has the constructors of 2D, and its shapes.
 
 mod collider;
 pub(super) mod from_constructor;

@@ -1,6 +1,6 @@
 //! Bevy's 3D primitives as colliders.
 //!
-//! Tori, which are not convex, and extrusions have none: decompose them as finely as the game needs
+//! Tori, which are not convex, and extrusions have no collider: decompose them as finely as the game needs
 //! (`Collider::compound`, `Collider::convex_decomposition_from_mesh`).
 
 use super::super::Collider;

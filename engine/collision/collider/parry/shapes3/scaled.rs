@@ -1,4 +1,4 @@
-//! Scales of shapes that 3D has, or that differ from those of 2D. `shapes2` exports the same names.
+//! Scales of shapes that only 3D has, or that differ from 2D. `shapes2` exports the same names.
 
 use super::super::handedness::{stretched_border, turns_winding};
 use crate::math::{Scalar, Vector};
@@ -64,7 +64,7 @@ pub(in super::super) fn stretched(shape: TypedShape<'_>, size: Vector) -> Option
     }
 }
 
-/// A cone points along y. Upside down it is a compound with the turned cone as its part, which stays round.
+/// A cone points along y. An inverted cone is a compound with a rotated cone as its part, which stays round.
 fn mirrored_cone(cone: SharedShape, signs: Vector) -> SharedShape {
     if signs.y > 0.0 {
         return cone;
@@ -84,8 +84,8 @@ fn scaled_hull(hull: &ConvexPolyhedron, scale: Vector) -> Option<ConvexPolyhedro
         .or_else(|| ConvexPolyhedron::from_convex_hull(&corners))
 }
 
-/// Columns follow x, rows follow z. A mirror of one of them exchanges the diagonals of cells; left is
-/// where x is least.
+/// Columns follow x, rows follow z. A mirror of one of them swaps the diagonals of cells; left is the side
+/// with the smallest x.
 fn mirrored_heights(field: &HeightField, signs: Vector) -> SharedShape {
     let (heights, cells) = (field.heights(), field.cells_statuses());
     let (back_rows, back_columns) = (signs.z < 0.0, signs.x < 0.0);

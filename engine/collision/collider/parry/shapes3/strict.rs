@@ -1,4 +1,4 @@
-//! Constructors of 3D that refuse what their namesakes without `try_` repair. `shapes2` has those of 2D.
+//! 3D constructors that return an error where their namesakes without `try_` repair. See `shapes2` for 2D.
 
 use super::super::{
     Collider, ColliderError as Error, FillMode,

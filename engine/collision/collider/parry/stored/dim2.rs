@@ -20,7 +20,7 @@ use crate::{
     },
 };
 
-/// Whether a shape has its faces. 2D shapes have none to lack.
+/// Whether a shape has its faces. True in 2D, where shapes have no faces.
 pub(super) fn has_faces(_: &SharedShape) -> bool {
     true
 }
@@ -137,7 +137,7 @@ impl StoredSpecial {
     }
 }
 
-/// Stored format of a convex polygon. Parry's normals may be those of edges that it has shortened since.
+/// Stored format of a convex polygon. Parry's normals may belong to edges that it has shortened since.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "ConvexPolygon")]
 pub(super) struct StoredPolygon {

@@ -22,7 +22,7 @@ use crate::{
     },
 };
 
-/// Whether a shape has its faces. Parry's hulls of needle-shaped point sets have none, and panic.
+/// Whether a shape has its faces. Parry's hulls of needle-shaped point sets have no faces, and panic.
 pub(super) fn has_faces(shape: &SharedShape) -> bool {
     match shape.as_typed_shape() {
         TypedShape::ConvexPolyhedron(hull) => !hull.faces().is_empty(),

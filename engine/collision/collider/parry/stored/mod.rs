@@ -87,7 +87,7 @@ impl Serialize for Collider {
 impl<'de> Deserialize<'de> for Collider {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let stored = StoredCollider::deserialize(deserializer)?;
-        // Parry's algorithms may assert conditions that cannot be checked before.
+        // Parry's algorithms may assert conditions that cannot be checked earlier.
         let collider = without_panic(|| stored.collider());
         collider.unwrap_or(Err("a collider's shape is degenerate")).map_err(de::Error::custom)
     }

@@ -40,7 +40,7 @@ impl Piece {
         Self::list(vector.to_array(), Self::Number)
     }
 
-    /// Deserializes a value of which this is the list of fields.
+    /// Deserializes a value from the list of its fields.
     pub fn build<T: for<'de> Deserialize<'de>>(self) -> Result<T, Fault> {
         T::deserialize(self).map_err(|_| "parry has other fields")
     }

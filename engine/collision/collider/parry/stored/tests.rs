@@ -107,7 +107,7 @@ fn vertices_that_no_triangle_uses_are_left_out_of_a_mended_mesh() {
 /// All data of a shape, by parry's own serialization, which includes trees, topology and normals.
 fn exact(shape: &SharedShape) -> String {
     match shape.as_typed_shape() {
-        // Parry keeps the chunks of voxels in a hash map, and its tree has that order.
+        // Parry keeps the chunks of voxels in a hash map, and its tree has the order of the map.
         TypedShape::Voxels(_) | TypedShape::Custom(_) => {
             serde_json::to_string(&Part::of(shape).expect("ours")).expect("a part")
         }

@@ -9,8 +9,7 @@ use derive_more::From;
 
 use crate::math::{ComputeMassProperties, MassProperties};
 
-/// The density of a collider's material, in kg/m³ (in 2D kg/m²). 1 by default. With 0 the
-/// collider has no mass.
+/// The density of a collider, in kg/m³ (in 2D kg/m²). 1 by default. With 0 the collider has no mass.
 #[derive(Component, Reflect, Clone, Copy, Debug, Deref, DerefMut, PartialEq, PartialOrd, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -31,10 +30,11 @@ impl ColliderDensity {
     pub const ZERO: Self = Self(0.0);
 }
 
-/// The mass properties of a collider with its [`ColliderDensity`], in the collider's frame. Computed from the
-/// shape: writing it has no lasting effect. To set a mass, insert a [`Mass`](super::Mass).
+/// The mass properties of a collider with its [`ColliderDensity`], in the collider's frame. They are computed
+/// from the shape, and writing the component has no lasting effect. To set a mass, insert a
+/// [`Mass`](super::Mass).
 ///
-/// Sensors and disabled colliders have it as well, but it does not count for their body.
+/// Sensors and disabled colliders also have the component, but their mass does not count for the body.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(

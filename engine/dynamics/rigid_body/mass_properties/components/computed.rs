@@ -10,12 +10,11 @@ use derive_more::From;
 use super::{CenterOfMass, Mass, MassError};
 use crate::math::{AdjustPrecision, RecipOrZero, Scalar, Vector};
 
-/// The total mass of a body, in kg. Stored as its inverse, so that infinite mass is 0. A mass of 0 means
-/// infinite, too.
+/// The total mass of a body, in kg. Stored as its inverse, so an infinite mass is 0. A mass of 0 also means
+/// infinite.
 ///
 /// Computed from [`Mass`] and the colliders. Static bodies have infinite mass. Kinematic bodies have the mass
-/// they would have as dynamic ones, without effect on contacts. Write it only with
-/// [`NoAutoMass`](super::NoAutoMass).
+/// of a dynamic body, without effect on contacts. Write it only with [`NoAutoMass`](super::NoAutoMass).
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -39,7 +38,7 @@ impl ComputedMass {
         result.unwrap_or(Self::INFINITY)
     }
 
-    /// A mass in kg; 0 means infinite. Negative and NaN are errors.
+    /// A mass in kg; 0 means infinite. Negative values and NaN are errors.
     pub fn try_new(mass: Scalar) -> Result<Self, MassError> {
         check(mass).map(|()| Self { inverse: mass.recip_or_zero() })
     }
@@ -52,7 +51,7 @@ impl ComputedMass {
         result.unwrap_or(Self::INFINITY)
     }
 
-    /// A mass from its inverse in 1/kg. Negative and NaN are errors.
+    /// A mass from its inverse in 1/kg. Negative values and NaN are errors.
     pub fn try_from_inverse(inverse_mass: Scalar) -> Result<Self, MassError> {
         check(inverse_mass).map(|()| Self { inverse: inverse_mass })
     }
@@ -77,7 +76,7 @@ impl ComputedMass {
         !self.is_infinite() && !self.is_nan()
     }
 
-    /// Whether nothing can push the body.
+    /// Whether the mass is infinite: no impulse moves the body.
     pub fn is_infinite(self) -> bool {
         self.value() == 0.0 && !self.is_nan()
     }

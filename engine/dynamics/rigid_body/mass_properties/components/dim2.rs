@@ -1,4 +1,4 @@
-//! Angular inertia in 2D: one number. `dim3.rs` has the tensors of 3D.
+//! Angular inertia in 2D: a scalar. `dim3.rs` has the tensors of 3D.
 
 use bevy_derive::{Deref, DerefMut};
 use bevy_ecs::prelude::*;
@@ -11,13 +11,13 @@ use derive_more::From;
 use super::{AngularInertiaError, CenterOfMass, ComputedCenterOfMass};
 use crate::math::{AdjustPrecision, ComputeMassProperties, MassProperties, RecipOrZero, Scalar, Vector};
 
-/// The angular inertia of one entity about its centre of mass, in kg·m²: of a body, or of a part of a body on
-/// a descendant.
+/// The angular inertia of a body about its centre of mass, or of a part of the body on a descendant, in
+/// kg·m².
 ///
 /// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`],
-/// is the sum over the body and its descendants about the common centre of mass, or only this with
-/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia). Infinity is allowed. Negative values and NaN count
-/// as 0, with a warning.
+/// is the sum over the body and its descendants about the common centre of mass. With
+/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia) it is only the body's own inertia. Infinity is
+/// allowed. Negative values and NaN count as 0, with a warning.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -51,8 +51,8 @@ impl AngularInertia {
     }
 }
 
-/// The total angular inertia of a body about its centre of mass, in kg·m². Stored as its inverse, so that
-/// infinite inertia is 0. An inertia of 0 means infinite, too.
+/// The total angular inertia of a body about its centre of mass, in kg·m². Stored as its inverse, so an
+/// infinite inertia is 0. An inertia of 0 also means infinite.
 ///
 /// Computed from [`AngularInertia`] and the colliders. Static bodies have infinite inertia. Write it only
 /// with [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
@@ -80,7 +80,7 @@ impl Default for ComputedAngularInertia {
 }
 
 impl ComputedAngularInertia {
-    /// Cannot be rotated.
+    /// Infinite inertia: the body cannot be rotated.
     pub const INFINITY: Self = Self { inverse: 0.0 };
 
     /// An inertia in kg·m²; 0 means infinite. Negative values and NaN panic in debug builds and give infinite
@@ -91,7 +91,7 @@ impl ComputedAngularInertia {
         result.unwrap_or(Self::INFINITY)
     }
 
-    /// An inertia in kg·m²; 0 means infinite. Negative and NaN are errors.
+    /// An inertia in kg·m²; 0 means infinite. Negative values and NaN are errors.
     pub fn try_new(angular_inertia: Scalar) -> Result<Self, AngularInertiaError> {
         check(angular_inertia).map(|()| Self { inverse: angular_inertia.recip_or_zero() })
     }
@@ -104,7 +104,7 @@ impl ComputedAngularInertia {
         result.unwrap_or(Self::INFINITY)
     }
 
-    /// An inertia from its inverse in 1/(kg·m²). Negative and NaN are errors.
+    /// An inertia from its inverse in 1/(kg·m²). Negative values and NaN are errors.
     pub fn try_from_inverse(inverse_angular_inertia: Scalar) -> Result<Self, AngularInertiaError> {
         check(inverse_angular_inertia).map(|()| Self { inverse: inverse_angular_inertia })
     }
@@ -130,7 +130,7 @@ impl ComputedAngularInertia {
     }
 
     /// The inertia of a body of `mass` kg about an axis at `offset` metres from its centre of mass, by the
-    /// parallel axis theorem: I + m d². 0, which means infinite, if the inertia is infinite.
+    /// parallel axis theorem: I + m d². If the inertia is infinite, the result is 0, which means infinite.
     pub fn shifted(&self, mass: Scalar, offset: Vector) -> Scalar {
         if self.is_infinite() { 0.0 } else { self.value() + mass * offset.length_squared() }
     }

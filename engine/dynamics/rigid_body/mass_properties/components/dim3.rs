@@ -1,5 +1,5 @@
-//! Angular inertia in 3D: a symmetric tensor, or principal values with their axes. `dim2.rs` has the
-//! number of 2D.
+//! Angular inertia in 3D: a symmetric tensor, or principal values with their axes. `dim2.rs` has the scalar
+//! of 2D.
 
 use bevy_ecs::prelude::*;
 use bevy_heavy::AngularInertiaTensor;
@@ -19,13 +19,13 @@ use crate::math::{
     SymmetricMatrix, SymmetricMatrix3, Vector,
 };
 
-/// The angular inertia of one entity about its centre of mass, in kg·m², as principal values with their axes:
-/// of a body, or of a part of a body on a descendant.
+/// The angular inertia of a body about its centre of mass, or of a part of the body on a descendant, in
+/// kg·m². Given as principal values with their axes.
 ///
 /// It replaces the inertia of the collider on the same entity. The body's total, [`ComputedAngularInertia`],
-/// is the sum over the body and its descendants about the common centre of mass, or only this with
-/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia). Infinity is allowed. Negative values and NaN count
-/// as 0, with a warning.
+/// is the sum over the body and its descendants about the common centre of mass. With
+/// [`NoAutoAngularInertia`](super::NoAutoAngularInertia) it is only the body's own inertia. Infinity is
+/// allowed. Negative values and NaN count as 0, with a warning.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(type_path = false, Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -73,14 +73,14 @@ impl AngularInertia {
             .map(|()| Self { principal: principal_angular_inertia, local_frame })
     }
 
-    /// An inertia from its tensor, whose principal axes are computed. Values that rounding makes
-    /// negative become zero.
+    /// An inertia from its tensor. The principal axes are computed. Negative values caused by rounding become
+    /// zero.
     pub fn from_tensor(tensor: impl Into<AngularInertiaTensor>) -> Self {
         Self::from_symmetric_mat3(tensor.into().as_symmetric_mat3())
     }
 
-    /// An inertia from its tensor, whose principal axes are computed. Values that rounding makes
-    /// negative become zero.
+    /// An inertia from its tensor. The principal axes are computed. Negative values caused by rounding become
+    /// zero.
     pub fn from_symmetric_mat3(mat: SymmetricMat3) -> Self {
         let (principal, axes) = principal_axes(mat.as_symmetric_dmat3());
         Self {
@@ -89,7 +89,7 @@ impl AngularInertia {
         }
     }
 
-    /// An inertia from its tensor, which must be symmetric to the last bit.
+    /// An inertia from its tensor, which must be exactly symmetric.
     pub fn try_from_mat3(mat: Mat3) -> Result<Self, MatConversionError> {
         SymmetricMat3::try_from_mat3(mat).map(Self::from_symmetric_mat3)
     }
@@ -152,7 +152,7 @@ impl From<AngularInertia> for AngularInertiaTensor {
 }
 
 /// The total angular inertia of a body about its centre of mass, in its own frame, in kg·m². Stored as the
-/// inverse of the tensor, so that infinite inertia about an axis is 0. An inertia of 0 means infinite, too.
+/// inverse of the tensor, so an infinite inertia about an axis is 0. An inertia of 0 also means infinite.
 ///
 /// Computed from [`AngularInertia`] and the colliders. Static bodies have infinite inertia. Write it only
 /// with [`NoAutoAngularInertia`](super::NoAutoAngularInertia).
@@ -180,7 +180,7 @@ impl Default for ComputedAngularInertia {
 }
 
 impl ComputedAngularInertia {
-    /// Cannot be rotated.
+    /// Infinite inertia: the body cannot be rotated.
     pub const INFINITY: Self = Self { inverse: SymmetricMatrix::ZERO };
 
     /// An inertia whose principal axes are the body's own, in kg·m²; 0 about an axis means infinite. Negative
@@ -217,8 +217,8 @@ impl ComputedAngularInertia {
         Ok(Self { inverse }.rotated(orientation))
     }
 
-    /// An inertia from its tensor in the body's frame, in kg·m². The body cannot be rotated about axes
-    /// where it is zero.
+    /// An inertia from its tensor in the body's frame, in kg·m². The body cannot be rotated about axes with
+    /// zero inertia.
     pub fn from_tensor(tensor: SymmetricMatrix) -> Self {
         Self { inverse: invert(widen(tensor)).adjust_precision() }
     }
@@ -228,7 +228,7 @@ impl ComputedAngularInertia {
         Self { inverse: inverse_tensor }
     }
 
-    /// The tensor in the body's frame, in kg·m²; 0 about axes about which the body cannot be rotated.
+    /// The tensor in the body's frame, in kg·m². It is 0 about axes with infinite inertia.
     pub fn value(self) -> SymmetricMatrix {
         invert(widen(self.inverse)).adjust_precision()
     }
@@ -238,7 +238,7 @@ impl ComputedAngularInertia {
         self.inverse
     }
 
-    /// The tensor in the body's frame, in kg·m²; 0 about axes about which the body cannot be rotated.
+    /// The tensor in the body's frame, in kg·m². It is 0 about axes with infinite inertia.
     pub fn tensor(self) -> SymmetricMatrix {
         self.value()
     }
@@ -258,7 +258,7 @@ impl ComputedAngularInertia {
         *self = angular_inertia.into();
     }
 
-    /// The principal values in kg·m², and the frame of their axes in the body's.
+    /// The principal values in kg·m², and the frame of their axes relative to the body.
     pub fn principal_angular_inertia_with_local_frame(&self) -> (Vector, Quaternion) {
         let (inverse, axes) = principal_axes(widen(self.inverse));
         let principal = inverse.recip_or_zero().max(bevy_math::DVec3::ZERO);

@@ -1,4 +1,4 @@
-//! Components of mass: those the app sets, those of colliders, and those the engine computes.
+//! Components of mass properties: set by the app, of colliders, and computed by the engine.
 
 mod bundle;
 mod collider;
@@ -21,7 +21,7 @@ use derive_more::From;
 
 use crate::math::{ComputeMassProperties, VectorF32};
 
-/// Why a number is not a valid mass.
+/// The reason why a number is not a valid mass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MassError {
     /// The number is negative.
@@ -32,7 +32,7 @@ pub enum MassError {
     NaN,
 }
 
-/// Why a number, or in 3D one of three, is not a valid angular inertia.
+/// The reason why a number, or in 3D one of three numbers, is not a valid angular inertia.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AngularInertiaError {
     /// The number is negative.
@@ -43,12 +43,12 @@ pub enum AngularInertiaError {
     NaN,
 }
 
-/// The mass of one entity, in kg: of a body, or of a part of a body on a descendant.
+/// The mass of a body, or of a part of the body on a descendant, in kg.
 ///
 /// It replaces the mass of the collider on the same entity. Without an [`AngularInertia`] the collider's
 /// inertia is scaled in proportion. The body's total, [`ComputedMass`], is the sum over the body and its
-/// descendants, or only this with [`NoAutoMass`]. Infinity is allowed. Negative values and NaN count as 0,
-/// with a warning.
+/// descendants. With [`NoAutoMass`] it is only the body's own mass. Infinity is allowed. Negative values and
+/// NaN count as 0, with a warning.
 ///
 /// ```
 /// # use avian::prelude::*;
@@ -79,11 +79,11 @@ impl Mass {
     }
 }
 
-/// The centre of mass of one entity, in its own frame, in metres: of a body, or of a part of a body on
-/// a descendant.
+/// The centre of mass of a body, or of a part of the body on a descendant, in the entity's frame, in metres.
 ///
 /// It replaces the centre of the collider on the same entity. The body's total, [`ComputedCenterOfMass`], is
-/// the mean over the body and its descendants, weighted by mass, or only this with [`NoAutoCenterOfMass`].
+/// the mean over the body and its descendants, weighted by mass. With [`NoAutoCenterOfMass`] it is only the
+/// body's own centre of mass.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, Deref, DerefMut, PartialEq, From)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -103,7 +103,7 @@ impl CenterOfMass {
     }
 }
 
-/// Makes a body's total mass its own [`Mass`] only, without colliders and descendants. Without a `Mass` the
+/// Restricts a body's total mass to its own [`Mass`], without colliders and descendants. Without a `Mass` the
 /// app sets [`ComputedMass`] itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
@@ -116,7 +116,7 @@ impl CenterOfMass {
 )]
 pub struct NoAutoMass;
 
-/// Makes a body's total angular inertia its own [`AngularInertia`] only, without colliders and descendants.
+/// Restricts a body's total angular inertia to its own [`AngularInertia`], without colliders and descendants.
 /// Without an `AngularInertia` the app sets [`ComputedAngularInertia`] itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
@@ -129,8 +129,8 @@ pub struct NoAutoMass;
 )]
 pub struct NoAutoAngularInertia;
 
-/// Makes a body's centre of mass its own [`CenterOfMass`] only, without colliders and descendants. Without a
-/// `CenterOfMass` the app sets [`ComputedCenterOfMass`] itself.
+/// Restricts a body's centre of mass to its own [`CenterOfMass`], without colliders and descendants. Without
+/// a `CenterOfMass` the app sets [`ComputedCenterOfMass`] itself.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Debug, Default, PartialEq)]
 #[require(RecomputeMassProperties)]
@@ -142,7 +142,7 @@ pub struct NoAutoAngularInertia;
 )]
 pub struct NoAutoCenterOfMass;
 
-/// Marks a body whose mass properties are computed again before the next step, which removes the marker.
+/// Marks a body for recomputation of its mass properties before the next step, which removes the marker.
 ///
 /// The engine inserts it when it detects a change. See [`MassPropertyPlugin`](super::MassPropertyPlugin) for
 /// changes that it does not detect.

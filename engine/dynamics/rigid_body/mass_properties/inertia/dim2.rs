@@ -30,12 +30,12 @@ impl Inertia {
         Self((self.0 * factor).min(HUGE))
     }
 
-    /// In other axes: the same in 2D.
+    /// The inertia in rotated axes. In 2D it is unchanged.
     pub(in super::super) fn rotated(self, _rotation: Matrix64) -> Self {
         self
     }
 
-    /// About a point at an offset from the centre of mass: I + m d².
+    /// The inertia about a point at an offset from the centre of mass: I + m d².
     pub(in super::super) fn shifted(self, mass: f64, offset: Vector64) -> Self {
         Self(self.0 + mass * offset.length_squared())
     }
@@ -44,7 +44,7 @@ impl Inertia {
         Self(self.0 + other.0)
     }
 
-    /// For the solver. Infinite if zero or beyond the range of `f32`.
+    /// The inertia for the solver. Infinite if zero or beyond the range of `f32`.
     pub(in super::super) fn computed(self) -> ComputedAngularInertia {
         if self.0 > 0.0 && self.0 < f64::from(f32::MAX) {
             ComputedAngularInertia::new(self.0 as Scalar)
@@ -67,7 +67,7 @@ pub(super) fn mass_properties(mass: f32, center: Vec2, inertia: Inertia) -> Mass
 }
 
 impl PartFrame {
-    /// The frame of a collider in its body's frame. Its scale is in its mass properties already.
+    /// The frame of a collider in its body's frame. The collider's mass properties already include its scale.
     pub(in super::super) fn of_collider(transform: &ColliderTransform) -> Self {
         let (cos, sin) = (transform.rotation.cos as f64, transform.rotation.sin as f64);
         Self {

@@ -15,8 +15,8 @@ use crate::{
     math::{AdjustPrecision, MassProperties},
 };
 
-/// Ratio of an infinite principal value, as it is represented, to the largest finite one. With more, the
-/// finite ones are lost in rounding when the frame is rotated.
+/// The ratio of the number that represents an infinite principal value to the largest finite one. With a
+/// larger ratio, rounding loses the finite values when the frame is rotated.
 const INFINITE_RATIO: f64 = 1e9;
 /// An angular inertia tensor in kg·m².
 #[derive(Clone, Copy, Debug)]
@@ -50,12 +50,12 @@ impl Inertia {
         Self(self.0 * factor.min(HUGE))
     }
 
-    /// In other axes: R I Rᵀ.
+    /// The inertia in rotated axes: R I Rᵀ.
     pub(in super::super) fn rotated(self, rotation: Matrix64) -> Self {
         Self(rotated(self.0, rotation))
     }
 
-    /// About a point at an offset from the centre of mass: I + m (|d|² 1 − d dᵀ).
+    /// The inertia about a point at an offset from the centre of mass: I + m (|d|² 1 − d dᵀ).
     pub(in super::super) fn shifted(self, mass: f64, d: Vector64) -> Self {
         Self(shifted(self.0, mass, d))
     }
@@ -64,7 +64,7 @@ impl Inertia {
         Self(self.0 + other.0)
     }
 
-    /// For the solver. Infinite about axes where it is zero or beyond the range of `f32`.
+    /// The inertia for the solver. Infinite about axes where it is zero or beyond the range of `f32`.
     pub(in super::super) fn computed(self) -> ComputedAngularInertia {
         ComputedAngularInertia::from_inverse_tensor(invert(self.0).adjust_precision())
     }
@@ -85,7 +85,7 @@ pub(super) fn mass_properties(mass: f32, center: Vec3, inertia: Inertia) -> Mass
 }
 
 impl PartFrame {
-    /// The frame of a collider in its body's frame. Its scale is in its mass properties already.
+    /// The frame of a collider in its body's frame. The collider's mass properties already include its scale.
     pub(in super::super) fn of_collider(transform: &ColliderTransform) -> Self {
         let [x, y, z, w] = transform.rotation.0.to_array().map(|component| component as f64);
         Self {

@@ -5,7 +5,7 @@ pub(in super::super) use bevy_math::{DMat2 as Matrix64, DVec2 as Vector64};
 #[cfg(feature = "3d")]
 pub(in super::super) use bevy_math::{DMat3 as Matrix64, DVec3 as Vector64};
 
-/// Represents infinity, so that sums stay finite. Other masses vanish beside it, and no result contains it.
+/// Represents infinity in finite sums. Other masses vanish beside it, and no result contains it.
 pub(in super::super) const HUGE: f64 = 1e60;
 
 /// A valid number: NaN and negative values become 0, infinity becomes [`HUGE`].
@@ -31,7 +31,8 @@ pub(in super::super) struct PartFrame {
 }
 
 impl PartFrame {
-    /// The frame `inner`, given in this one. Shear, from a rotation inside an uneven scale, is dropped.
+    /// The frame `inner`, which is given in this frame. Shear, from a rotation inside an uneven scale, is
+    /// dropped.
     pub(in super::super) fn then(&self, inner: &PartFrame) -> Self {
         Self {
             translation: self.translation + self.rotation * (self.scale * inner.translation),

@@ -1,8 +1,8 @@
 //! Sums of mass properties: parts of a body, each with mass, centre and inertia.
 //!
-//! Computed in `f64`: where parts are far from their common centre the parallel axis theorem cancels large
-//! terms. glam's `f64` types compute alike on every machine, its `f32` quaternions and matrices do not.
-//! (`bevy_heavy`'s sum is not used: it diagonalises by an arc cosine and with an absolute tolerance.)
+//! Computed in `f64`: if parts are far from their common centre, large terms of the parallel axis theorem
+//! cancel. glam's `f64` types give the same results on every machine, its `f32` quaternions and matrices do
+//! not. (`bevy_heavy`'s sum is not used: it diagonalises by an arc cosine and with an absolute tolerance.)
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -42,8 +42,8 @@ impl Part {
         }
     }
 
-    /// Replaces the collider's properties by the entity's own components. A mass without inertia scales the
-    /// collider's inertia.
+    /// Replaces the collider's properties by the entity's own components. A mass without an inertia scales
+    /// the collider's inertia.
     pub(super) fn overridden(
         mut self,
         mass: Option<&Mass>,
@@ -66,7 +66,7 @@ impl Part {
         self
     }
 
-    /// The part in the outer frame, if it was given in `frame`.
+    /// The part in the outer frame, for a part given in `frame`.
     pub(super) fn moved(self, frame: &PartFrame) -> Self {
         Self {
             mass: self.mass,
@@ -75,9 +75,9 @@ impl Part {
         }
     }
 
-    /// The total of some parts: the sum of masses, the mean of centres weighted by mass, and the sum of
-    /// inertias about the common centre by the parallel axis theorem. If no part has mass, the centre is that
-    /// of the first.
+    /// The total of several parts: the sum of masses, the mean of centres weighted by mass, and the sum of
+    /// inertias about the common centre by the parallel axis theorem. If no part has mass, the centre is the
+    /// first part's.
     pub(super) fn sum(parts: &[Part]) -> Self {
         let [first, rest @ ..] = parts else {
             return Self::ZERO;

@@ -1,6 +1,6 @@
-//! Sums of parts against closed forms, and which changes make a body be computed again.
+//! Sums of parts against closed forms, and the changes that recompute a body's mass.
 //!
-//! Only the inertia about z is checked, which both dimensions have.
+//! Only the inertia about z is checked, because both dimensions have it.
 
 #[cfg_attr(feature = "2d", path = "dim2.rs")]
 #[cfg_attr(feature = "3d", path = "dim3.rs")]
@@ -264,7 +264,7 @@ fn what_is_no_mass_counts_as_zero_and_infinity_as_infinite() {
     let mut scale = Scale::new();
     let body = scale.body(Mass(f32::INFINITY));
     scale.collider(body, (lump(2.0), at_x(1.0)));
-    // The centre is at the infinite part. The inertia of the finite one about it is 1 + 2 · 1².
+    // The centre is at the infinite part. The inertia of the finite part about it is 1 + 2 · 1².
     scale.expect(body, (0.0, 3.0, 0.0));
 }
 
@@ -273,7 +273,7 @@ fn resting_bodies_are_not_computed_again() {
     let mut scale = Scale::new();
     let body = scale.body((lump(2.0), Mass(4.0)));
     scale.weigh(body);
-    // A wrong value that only a computation would correct.
+    // A wrong value that only a recomputation corrects.
     scale.world().get_mut::<ComputedMass>(body).expect("required").set(100.0);
     assert_eq!(scale.weigh(body).0, 100.0);
     scale.world().entity_mut(body).insert(RecomputeMassProperties);

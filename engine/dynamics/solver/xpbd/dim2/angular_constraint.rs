@@ -7,9 +7,9 @@ use crate::{
     math::{AngularVector, Scalar, SymmetricTensor, Vector3},
 };
 
-/// Turns two bodies by angular impulses.
+/// Rotates two bodies by angular impulses.
 pub trait AngularConstraint {
-    /// Turns the bodies by the change of a multiplier, in kg·m²·rad. Returns the impulse.
+    /// Rotates the bodies by the change of a multiplier, in kg·m²·rad. Returns the impulse.
     fn apply_angular_lagrange_update(
         &self,
         body1: &mut SolverBody,
@@ -21,7 +21,8 @@ pub trait AngularConstraint {
         self.apply_angular_impulse(body1, body2, inv_angular_inertia1, inv_angular_inertia2, delta_lagrange)
     }
 
-    /// Turns the first body by an impulse in kg·m²·rad, and the second by its opposite. Returns the impulse.
+    /// Rotates the first body by an impulse in kg·m²·rad, and the second by the opposite impulse. Returns the
+    /// impulse.
     fn apply_angular_impulse(
         &self,
         body1: &mut SolverBody,
@@ -35,8 +36,8 @@ pub trait AngularConstraint {
         impulse
     }
 
-    /// Turns the bodies so that `angle`, that of the first relative to the second in rad, vanishes. Returns
-    /// the change of the multiplier.
+    /// Rotates the bodies to make `angle` zero, the angle of the first body relative to the second in rad.
+    /// Returns the change of the multiplier.
     #[expect(clippy::too_many_arguments, reason = "the interface is Avian's")]
     fn align_orientation(
         &self,
@@ -54,7 +55,8 @@ pub trait AngularConstraint {
         self.apply_angular_impulse(body1, body2, inv_angular_inertia1, inv_angular_inertia2, update)
     }
 
-    /// Turns the bodies by the change of a multiplier about an axis, of which z counts. Returns the impulse.
+    /// Rotates the bodies by the change of a multiplier about an axis. Only the axis's z counts. Returns the
+    /// impulse.
     fn apply_angular_correction(
         &self,
         body1: &mut SolverBody,
@@ -68,7 +70,7 @@ pub trait AngularConstraint {
         self.apply_angular_impulse(body1, body2, inv_angular_inertia1, inv_angular_inertia2, impulse)
     }
 
-    /// The angle per impulse about a unit axis, of which z counts, in 1/(kg·m²).
+    /// The angle per impulse about a unit axis, in 1/(kg·m²). Only the axis's z counts.
     fn compute_generalized_inverse_mass(
         &self,
         inv_angular_inertia: SymmetricTensor,
@@ -77,7 +79,7 @@ pub trait AngularConstraint {
         axis.z * inv_angular_inertia * axis.z
     }
 
-    /// The angle by an impulse, in rad.
+    /// The angle caused by an impulse, in rad.
     fn get_delta_rot(inverse_inertia: SymmetricTensor, p: Scalar) -> Scalar {
         inverse_inertia * p
     }

@@ -1,4 +1,4 @@
-//! Turns of bodies by angular impulses in 2D. `dim3` exports the same names.
+//! Rotations of bodies by angular impulses in 2D. `dim3` exports the same names.
 
 pub(super) mod angular_constraint;
 
@@ -26,19 +26,19 @@ pub(super) fn inverse_moment(inverse: SymmetricTensor, moment: AngularVector) ->
     moment * inverse * moment
 }
 
-/// The change by a rotation vector.
+/// The change of rotation given by a rotation vector.
 pub(super) fn delta_of(vector: AngularVector) -> AngularDelta {
     vector
 }
 
-/// Turns a body.
+/// Rotates a body.
 pub(super) fn turn(body: &mut SolverBody, delta: AngularDelta) {
     if delta != 0.0 {
         body.delta_rotation = Rotation::radians(delta) * body.delta_rotation;
     }
 }
 
-/// Turns a body by a rotation vector.
+/// Rotates a body by a rotation vector.
 pub(super) fn turn_by(body: &mut SolverBody, vector: AngularVector) {
     turn(body, vector);
 }

@@ -7,9 +7,10 @@ use crate::{
     math::{AngularVector, Quaternion, Scalar, SymmetricTensor, Vector, Vector3},
 };
 
-/// Turns two bodies by angular impulses. Inertias and axes are about the world's axes.
+/// Rotates two bodies by angular impulses. Inertias and axes are in world axes.
 pub trait AngularConstraint {
-    /// Turns the bodies by the change of a multiplier, in kg·m²·rad, about a unit axis. Returns the impulse.
+    /// Rotates the bodies by the change of a multiplier, in kg·m²·rad, about a unit axis. Returns the
+    /// impulse.
     fn apply_angular_lagrange_update(
         &self,
         body1: &mut SolverBody,
@@ -23,7 +24,8 @@ pub trait AngularConstraint {
         self.apply_angular_impulse(body1, body2, inv_angular_inertia1, inv_angular_inertia2, impulse)
     }
 
-    /// Turns the first body by an impulse in kg·m²·rad, and the second by its opposite. Returns the impulse.
+    /// Rotates the first body by an impulse in kg·m²·rad, and the second by the opposite impulse. Returns the
+    /// impulse.
     fn apply_angular_impulse(
         &self,
         body1: &mut SolverBody,
@@ -37,8 +39,8 @@ pub trait AngularConstraint {
         impulse
     }
 
-    /// Turns the bodies so that `rotation_difference`, the rotation vector of the first relative to the
-    /// second in rad, vanishes. Returns the change of the multiplier, along its axis.
+    /// Rotates the bodies to make `rotation_difference` zero, the rotation vector of the first body relative
+    /// to the second in rad. Returns the change of the multiplier along its axis.
     #[expect(clippy::too_many_arguments, reason = "the interface is Avian's")]
     fn align_orientation(
         &self,
@@ -60,7 +62,7 @@ pub trait AngularConstraint {
         self.apply_angular_lagrange_update(body1, body2, inverse1, inverse2, update, axis)
     }
 
-    /// As [`apply_angular_lagrange_update`](Self::apply_angular_lagrange_update).
+    /// The same as [`apply_angular_lagrange_update`](Self::apply_angular_lagrange_update).
     fn apply_angular_correction(
         &self,
         body1: &mut SolverBody,
@@ -83,7 +85,7 @@ pub trait AngularConstraint {
         axis.dot(inv_angular_inertia * axis)
     }
 
-    /// The rotation by an impulse.
+    /// The rotation caused by an impulse.
     fn get_delta_rot(inverse_inertia: SymmetricTensor, p: Vector) -> Quaternion {
         delta_of(rotation_vector(inverse_inertia, p))
     }

@@ -1,4 +1,4 @@
-//! Turns of bodies by angular impulses in 3D. `dim2` exports the same names.
+//! Rotations of bodies by angular impulses in 3D. `dim2` exports the same names.
 
 pub(super) mod angular_constraint;
 
@@ -26,21 +26,21 @@ pub(super) fn inverse_moment(inverse: SymmetricTensor, moment: AngularVector) ->
     moment.dot(inverse * moment)
 }
 
-/// The unit quaternion of the rotation by a vector: q = (½ φ, 1) normalised, exact to third order.
+/// The unit quaternion of a rotation vector: q = (½ φ, 1) normalised, exact to third order.
 pub(super) fn delta_of(vector: AngularVector) -> AngularDelta {
     let half = vector * 0.5;
     let length = (1.0 + half.length_squared()).sqrt();
     Quaternion::from_xyzw(half.x / length, half.y / length, half.z / length, 1.0 / length)
 }
 
-/// Turns a body.
+/// Rotates a body.
 pub(super) fn turn(body: &mut SolverBody, delta: AngularDelta) {
     if delta != Quaternion::IDENTITY {
         body.delta_rotation = Rotation(delta) * body.delta_rotation;
     }
 }
 
-/// Turns a body by a rotation vector.
+/// Rotates a body by a rotation vector.
 pub(super) fn turn_by(body: &mut SolverBody, vector: AngularVector) {
     turn(body, delta_of(vector));
 }
