@@ -4,8 +4,8 @@ use bevy_ecs::{prelude::*, system::SystemParam};
 use bevy_time::Time;
 use kernel::{
     bvh::{FoundPairs, Known, Movers},
-    contact::{ContactFlags, ContactTable},
-    data::BitSet,
+    contact::ContactFlags,
+    data::{BitSet, PairSet},
     table::{BodyTable, ColliderTable, Fattening, NONE},
 };
 
@@ -189,29 +189,28 @@ impl PairSearch {
     }
 }
 
-/// Pairs that the search skips: colliders of one body, colliders in a crowd, and pairs with a contact.
+/// Pairs that the search skips: colliders of one body, and pairs with a contact.
 struct Contacted<'a> {
     colliders: &'a ColliderTable,
-    contacts: &'a ContactTable,
+    pairs: &'a PairSet,
 }
 
 impl Known for Contacted<'_> {
-    /// Colliders of one body, and bodies at one place, may overlap in thousands of pairs. The search does not
-    /// even list these pairs.
+    /// Colliders of one body may overlap in thousands of pairs. The search does not even list these pairs.
     #[inline]
     fn is_plain(&self, a: u32, b: u32) -> bool {
         let body = self.colliders.body(a);
-        body == self.colliders.body(b) && body != NONE || self.contacts.is_superfluous([a, b])
+        body == self.colliders.body(b) && body != NONE
     }
 
     #[inline]
     fn prefetch(&self, a: u32, b: u32) {
-        self.contacts.pairs().prefetch(a, b);
+        self.pairs.prefetch(a, b);
     }
 
     #[inline]
     fn contains(&self, a: u32, b: u32) -> bool {
-        self.contacts.pairs().contains(a, b)
+        self.pairs.contains(a, b)
     }
 }
 
@@ -227,14 +226,13 @@ pub(crate) fn find_new_pairs(
     let PairSearch { found, movers, rejected } = &mut *search;
     rejected.clear();
     let Colliders { table, trees, moved, .. } = &mut *colliders;
-    contacts.table.full().for_each(|id| _ = moved.insert(id));
     if moved.is_empty() {
         found.clear();
         threads.wake_for_pairs(0);
     } else {
         trees.movers(moved, &table.fat, movers);
         moved.clear();
-        let known = Contacted { colliders: table, contacts: &contacts.table };
+        let known = Contacted { colliders: table, pairs: contacts.table.pairs() };
         threads.wake_for_pairs(movers.list().len());
         found.find(&trees.trees, movers, &known, &threads.pool);
     }
@@ -250,10 +248,7 @@ pub(crate) fn add_contacts(
     let start = bevy_platform::time::Instant::now();
     let mut sleepers = Vec::new();
     for (place, &(a, b)) in search.found.pairs().iter().enumerate() {
-        let (bodies, colliders) = (&tables.bodies, &tables.colliders.table);
-        if bodies.may_pair(colliders, [a, b])
-            && !search.rejected.contains(place as u32)
-            && tables.contacts.table.admits([a, b], colliders, &bodies.table)
+        if tables.bodies.may_pair(&tables.colliders.table, [a, b]) && !search.rejected.contains(place as u32)
         {
             sleepers.extend(add_contact(&mut tables, [a, b], ContactFlags::default()));
         }

@@ -138,7 +138,6 @@ impl ContactManager<'_> {
     pub fn leave(&mut self, body: u32) {
         self.disconnect_body(body);
         self.leave_island(body);
-        self.contacts.crowded.remove(body);
         self.bodies.remove(body);
     }
 

@@ -14,12 +14,10 @@ use super::record::{Contact, ContactFlags, Frozen, Manifold};
 use super::table::{ContactTable, PointCount, Stored};
 use super::time_of_impact::{self, Meeting};
 use crate::data::{BitSet, Parts};
-use crate::graph::COLOR_COUNT;
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{Vector, max, min};
 use crate::table::NONE;
 use crate::thread_pool::ThreadPool;
-use std::collections::BTreeMap;
 
 /// The size of a block of contacts, in words of 64 ids. Recycling a block takes some microseconds. Smaller
 /// blocks cost more to hand out; larger blocks balance worse.
@@ -73,13 +71,9 @@ impl ContactTable {
         self.transfer_impulses(input);
     }
 
-    /// Finds the dynamic bodies that overlap other bodies deeply, and their full colliders.
+    /// Finds the dynamic bodies that overlap other bodies deeply.
     fn find_crowded(&mut self, input: &NarrowPhaseInput) {
         self.crowded.clear();
-        self.added = [BTreeMap::new(), core::mem::take(&mut self.added[0])];
-        self.deep_counts.clear();
-        core::mem::swap(&mut self.full, &mut self.were_full);
-        self.full.clear();
         if !self.any_deep {
             return;
         }
@@ -90,15 +84,6 @@ impl ContactTable {
                 dynamic.for_each(|body| _ = self.crowded.insert(body));
             }
         }
-        for id in self.active.iter() {
-            let Contact { bodies, colliders, flags, .. } = &self.contacts[id as usize];
-            let touches = flags.has(ContactFlags::TOUCHING) && !flags.has(ContactFlags::SENSOR);
-            if touches && bodies.iter().all(|body| *body != NONE && self.crowded.contains(*body)) {
-                colliders.iter().for_each(|collider| *self.deep_counts.entry(*collider).or_insert(0) += 1);
-            }
-        }
-        let full = self.deep_counts.iter().filter(|(_, count)| **count >= COLOR_COUNT);
-        full.for_each(|(collider, _)| _ = self.full.insert(*collider));
     }
 
     /// Commits the results of the workers. Manifolds after the first are stored in the order of contacts, not

@@ -2,9 +2,8 @@
 
 use super::record::{Contact, ContactFlags, LoadPoint, LostImpulse, Manifold, ManifoldSurface};
 use crate::data::{BitSet, IdPool, PairSet, Parts, Slack, prefetch};
-use crate::graph::COLOR_COUNT;
 use crate::math::DIM;
-use crate::table::{BodyKind, BodyTable, ColliderDef, ColliderTable, NONE};
+use crate::table::{ColliderTable, NONE};
 use std::collections::BTreeMap;
 
 /// All contacts.
@@ -33,15 +32,6 @@ pub struct ContactTable {
     pub(crate) any_deep: bool,
     /// The dynamic bodies that overlapped other bodies deeply when contacts were last updated.
     pub(super) crowded: BitSet,
-    /// See [`full`](Self::full).
-    pub(super) full: BitSet,
-    /// The full colliders of the update before.
-    pub(super) were_full: BitSet,
-    /// By solid collider of these bodies, the number of its contacts with others of these bodies.
-    pub(super) deep_counts: BTreeMap<u32, usize>,
-    /// By collider, the number of bounded contacts that were added since the last update, and between the two
-    /// updates before: whether a new contact is deep is known only after its first update.
-    pub(super) added: [BTreeMap<u32, usize>; 2],
     pub(super) extra: Vec<Vec<Manifold>>,
     free_extra: Vec<u32>,
     /// Buffer of the narrow phase's commit; empty between updates.
@@ -298,46 +288,6 @@ impl ContactTable {
         id
     }
 
-    /// Whether a pair needs no contact: both colliders are [full](Self::full). The bodies come apart by the contacts
-    /// they have.
-    #[inline(always)]
-    pub fn is_superfluous(&self, pair: [u32; 2]) -> bool {
-        pair.into_iter().all(|id| self.full.contains(id))
-    }
-
-    /// Whether a found pair gets a contact. The contacts of n bodies placed into each other grow with n, not n²: a pair
-    /// gets none if both colliders have as many as there are colours, and either overlap deeply or have
-    /// [merged cores](ColliderTable::are_cores_merged).
-    pub fn admits(&mut self, pair: [u32; 2], colliders: &ColliderTable, bodies: &BodyTable) -> bool {
-        let is_free = |id: u32| {
-            let ColliderDef { body, flags, .. } = &colliders[id].def;
-            !flags.sensor && *body != NONE && bodies[*body].kind == BodyKind::Dynamic
-        };
-        let is_crowded = |id: u32| self.crowded.contains(colliders.body(id));
-        let is_bounded = pair.into_iter().all(is_free)
-            && (pair.into_iter().all(is_crowded) || colliders.are_cores_merged(pair));
-        if !is_bounded {
-            return true;
-        }
-        let [new, recent] = &mut self.added;
-        let count = |id: &u32| {
-            let counts = [&self.deep_counts, &*new, recent];
-            counts.into_iter().filter_map(|counts| counts.get(id)).sum::<usize>()
-        };
-        if pair.iter().all(|id| count(id) >= COLOR_COUNT) {
-            return false;
-        }
-        pair.into_iter().for_each(|id| *new.entry(id).or_insert(0) += 1);
-        true
-    }
-
-    /// Full colliders: they are solid, on dynamic bodies that overlap other bodies deeply, and touch as many such
-    /// bodies as there are colours. Also the full colliders of the update before. Pairs of these may have been left
-    /// out, and are searched again.
-    pub fn full(&self) -> impl Iterator<Item = u32> {
-        self.full.iter().chain(self.were_full.iter())
-    }
-
     /// Removes a contact from all lists except colours and islands, and frees its id.
     pub(super) fn remove(&mut self, id: u32, colliders: &mut ColliderTable) {
         self.deactivate(id);
@@ -354,12 +304,6 @@ impl ContactTable {
                 self.contacts[(next[side] >> 1) as usize].previous[(next[side] & 1) as usize] =
                     previous[side];
             }
-        }
-        // Ids may be used again before the next update.
-        for collider in [a, b].into_iter().filter(|id| colliders[*id].first_contact == NONE) {
-            self.full.remove(collider);
-            self.were_full.remove(collider);
-            self.deep_counts.remove(&collider);
         }
         if extra != NONE {
             self.extra[extra as usize].clear();

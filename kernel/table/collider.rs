@@ -324,18 +324,6 @@ impl ColliderTable {
         self.owners[id as usize]
     }
 
-    /// Whether the [core](Shape::core) of each of two convex shapes contains the centre of the other core.
-    pub fn are_cores_merged(&self, pair: [u32; 2]) -> bool {
-        let is_convex = |id: u32| {
-            !matches!(self[id].def.shape, Shape::Composite(_) | Shape::Foreign(_) | Shape::HalfSpace(_))
-        };
-        let [a, b] = pair.map(|id| {
-            let (center, radius) = self[id].def.shape.core();
-            (self.poses[id as usize].transform(center), radius)
-        });
-        pair.into_iter().all(is_convex) && (b.0 - a.0).to_local().length() < min(a.1, b.1)
-    }
-
     /// The sizes that decide whether a body is fast.
     #[inline(always)]
     pub fn size_of(&self, body: u32) -> BodySize {

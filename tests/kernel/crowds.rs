@@ -3,7 +3,6 @@
 use super::dim::{container, sized, turned};
 use super::sim::Sim;
 use crate::kernel;
-use kernel::graph::COLOR_COUNT;
 use kernel::math::{Rot, Vector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::BodyKind;
@@ -67,51 +66,21 @@ fn bodies_in_one_place_come_apart_gently() {
 }
 
 #[test]
-fn contacts_of_a_crowd_are_bounded_and_none_is_forgotten() {
-    let mut sim = Sim::new();
-    (sim.gravity, sim.checked, sim.sleeping) = (Vector::ZERO, false, false);
-    let count = 300;
-    // Balls exactly in one place leave it along one line, one after the other.
-    let place = |i: usize| Vector::X * (0.002 * (i % 17) as f32) + Vector::Y * (0.002 * (i / 17) as f32);
-    let ids: Vec<u32> = (0..count).map(|i| sim.ball(0.25, place(i))).collect();
-    let (mut most, mut overlaps) = (0, 0);
-    for _ in 0..900 {
-        sim.step();
-        most = most.max(sim.contacts.len());
-    }
-    assert!(most < 2 * count * COLOR_COUNT, "{most} contacts of {count} balls in one place");
-    for (i, a) in ids.iter().enumerate() {
-        for b in &ids[..i] {
-            let distance = (sim.position(*a) - sim.position(*b)).to_local().length();
-            overlaps += usize::from(distance < 0.48);
-            let has_contact = sim.contacts.find(*b, *a).is_some();
-            assert!(
-                distance > 0.48 || has_contact,
-                "{b} and {a} overlap at {distance} m, and have no contact"
-            );
-        }
-    }
-    // All 44,850 pairs did.
-    assert!(overlaps < count, "{overlaps} pairs still overlap");
-}
-
-#[test]
 fn the_memory_of_a_crowd_is_given_back() {
     let mut sim = Sim::new();
     sim.checked = false;
     sim.floor();
     let kept = sim.ball(0.25, Vector::X * 20.0 + Vector::Y * 0.25);
-    let ids: Vec<u32> = (0..1000).map(|_| sim.ball(0.25, Vector::Y * 2.0)).collect();
+    let ids: Vec<u32> = (0..200).map(|_| sim.ball(0.25, Vector::Y * 2.0)).collect();
     sim.steps(5);
     let crowded = sim.contacts.capacity();
-    let bound = 500 * COLOR_COUNT..2000 * COLOR_COUNT;
-    assert!(bound.contains(&crowded), "{crowded} contacts of 1,000 balls in one place");
+    assert!(crowded >= 200 * 199 / 2, "{crowded} contacts");
     ids.iter().for_each(|id| sim.remove(*id));
     sim.checked = true;
     // Buffers that are in use are kept for some seconds.
     sim.steps(600);
     let left = sim.contacts.capacity();
-    assert!(left < crowded / 10, "places of {left} contacts are left of {crowded}");
+    assert!(left < crowded / 100, "places of {left} contacts are left of {crowded}");
     sim.cuboid(Vector::ONE * 0.25, Vector::X * 20.0 + Vector::Y);
     sim.steps(120);
     assert!(speed(&sim, kept) < 0.5 && sim.contacts.len() >= 2, "contacts are made anew");

@@ -409,7 +409,6 @@ impl Sim {
         self.pool.wake();
         let fattening = self.fattening();
         self.colliders.refresh_pushed(&mut self.bodies, fattening, &mut self.outgrown);
-        self.contacts.full().for_each(|id| _ = self.outgrown.insert(id));
         self.move_outgrown();
         let mut found = FoundPairs::default();
         found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.pool);
@@ -418,9 +417,7 @@ impl Sim {
             let is_refused = [a, b].iter().any(|id| self.unpaired.contains(id))
                 || self.apart.contains(&[a.min(b), a.max(b)]);
             let [first, second] = [a, b].map(|id| &self.colliders[id].def);
-            let may_collide =
-                !is_refused && first.body != second.body && first.layers.interacts_with(second.layers);
-            if may_collide && self.contacts.admits([a, b], &self.colliders, &self.bodies) {
+            if !is_refused && first.body != second.body && first.layers.interacts_with(second.layers) {
                 self.contact_manager().create(a, b);
             }
         }
