@@ -100,19 +100,20 @@ impl<N: Lane, M: InvMass<N>, const P: usize> ContactRow<N, M, P> {
     ) -> u32 {
         // SAFETY: by the contract.
         let (moments, speeds) = unsafe { self.speeds(rows) };
-        let (slowest, time, mut fast) = (N::splat(-params.blow_speed), N::splat(time * NEARLY), 0);
+        let (slowest, time, mut any) = (N::splat(-params.blow_speed), N::splat(time * NEARLY), 0);
+        let mut is_fast = [N::ZERO.lt(N::ZERO); P];
         for i in 0..P {
-            fast |= N::bits(N::and(speeds[i].lt(slowest), N::ZERO.lt(self.points[i].mass)));
+            is_fast[i] = N::and(speeds[i].lt(slowest), N::ZERO.lt(self.points[i].mass));
+            any |= N::bits(is_fast[i]);
         }
         // Few lanes close fast. The others need no gaps.
-        if fast & lanes == 0 {
+        if any & lanes == 0 {
             return 0;
         }
         // SAFETY: by the contract.
         let (gaps, mut struck) = (unsafe { self.gaps(rows, &moments) }, 0);
         for i in 0..P {
-            let is_struck = N::and(speeds[i].lt(slowest), (gaps[i] + speeds[i] * time).le(N::ZERO));
-            struck |= N::bits(N::and(is_struck, N::ZERO.lt(self.points[i].mass)));
+            struck |= N::bits(N::and(is_fast[i], (gaps[i] + speeds[i] * time).le(N::ZERO)));
         }
         struck & lanes
     }

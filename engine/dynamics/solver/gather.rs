@@ -115,8 +115,7 @@ impl<'w, 's> BodyInputContiguousItem<'w, 's> {
 }
 
 impl<'w, 's> MotionInputContiguousItem<'w, 's> {
-    /// Whether no body of the table has any of these components. Checking each body would take a quarter of
-    /// the time.
+    /// Whether no body of the table has any of these components: cheaper than a check of each body.
     fn is_none(&self) -> bool {
         let speeds = self.max_speed.is_none() && self.max_angular_speed.is_none();
         let damping = self.linear_damping.is_none() && self.angular_damping.is_none();
@@ -244,8 +243,7 @@ pub(crate) fn wake_changed(
     system: SystemChangeTick,
 ) {
     let written = tables.bodies.written;
-    // Bodies that were put to sleep in this step fell asleep with this velocity and gravity, because a level
-    // may be spawned asleep.
+    // Bodies put to sleep in this step keep this velocity and gravity: a level may be spawned asleep.
     let flipped = tables.bodies.table.flipped_set();
     let mut wake = |entity: Entity| {
         let Ok(body) = states.get(entity) else { return };
@@ -311,8 +309,7 @@ pub(crate) fn rest_kinematic(query: Query<(&LinearVelocity, &AngularVelocity)>, 
     ids.extend(table.awake_kinematic().filter(|id| at_rest(entities[*id as usize])));
     for &id in &ids {
         tables.contact_manager().set_kinematic_awake(id, false);
-        // A resting body has no velocity in the table. Otherwise setting the old velocity again would not be
-        // a change.
+        // A resting body has no velocity in the table, so that setting the old velocity again is a change.
         tables.bodies.table.set_velocity(id, Velocity::default());
     }
     tables.bodies.ids = ids;
