@@ -223,7 +223,7 @@ pub(crate) fn find_new_pairs(
     mut diagnostics: ResMut<CollisionDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
-    let PairSearch { found, movers, rejected } = &mut *search;
+    let PairSearch { found, movers, rejected, .. } = &mut *search;
     rejected.clear();
     let Colliders { table, trees, moved, .. } = &mut *colliders;
     if moved.is_empty() {
@@ -239,17 +239,24 @@ pub(crate) fn find_new_pairs(
     diagnostics.broad_phase = start.elapsed();
 }
 
-/// Adds contacts for the found pairs that may collide, in order of ids.
+/// Adds contacts for the found pairs that may collide, in order of ids. Pairs that were
+/// [left out](ContactManager::left_out) are searched again in the next step.
 pub(crate) fn add_contacts(
-    search: Res<PairSearch>,
+    mut search: ResMut<PairSearch>,
     mut tables: Tables,
     mut diagnostics: ResMut<CollisionDiagnostics>,
 ) {
     let start = bevy_platform::time::Instant::now();
+    let PairSearch { found, rejected, .. } = &mut *search;
+    found.retain(|place, (a, b)| {
+        tables.bodies.may_pair(&tables.colliders.table, [a, b]) && !rejected.contains(place)
+    });
+    let left_out = tables.contact_manager().left_out(found.pairs());
     let mut sleepers = Vec::new();
-    for (place, &(a, b)) in search.found.pairs().iter().enumerate() {
-        if tables.bodies.may_pair(&tables.colliders.table, [a, b]) && !search.rejected.contains(place as u32)
-        {
+    for (place, &(a, b)) in found.pairs().iter().enumerate() {
+        if left_out.contains(place as u32) {
+            tables.colliders.moved.insert(a);
+        } else {
             sleepers.extend(add_contact(&mut tables, [a, b], ContactFlags::default()));
         }
     }

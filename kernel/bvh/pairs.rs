@@ -3,7 +3,7 @@
 
 use super::meet::{Slots, Walk};
 use super::tree::Tree;
-use crate::data::{BitSet, PairSet};
+use crate::data::{BitSet, PairSet, Slack};
 use crate::shape::Aabb;
 use crate::thread_pool::ThreadPool;
 use std::sync::{Mutex, PoisonError};
@@ -324,6 +324,7 @@ pub struct FoundPairs {
     sorted: Vec<(u32, u32)>,
     plan: Plan,
     workers: Vec<Mutex<Worker>>,
+    slack: Slack,
 }
 
 impl FoundPairs {
@@ -332,7 +333,7 @@ impl FoundPairs {
         if self.workers.len() < pool.workers() {
             self.workers.resize_with(pool.workers(), Mutex::default);
         }
-        let Self { sorted, plan, workers } = self;
+        let Self { sorted, plan, workers, slack } = self;
         plan.make(trees, movers);
         let (plan, list, parts) = (&*plan, movers.list(), plan.parts.len());
         pool.run(parts + plan.query_blocks(movers), |block, worker| {
@@ -349,10 +350,23 @@ impl FoundPairs {
             drop_known(&mut worker.found, start, known);
         });
         sorted.clear();
-        for worker in workers {
+        for worker in &mut *workers {
             sorted.append(&mut worker.get_mut().unwrap_or_else(PoisonError::into_inner).found);
         }
         sorted.sort_unstable();
+        if slack.is_due(sorted.len()) {
+            sorted.shrink_to_fit();
+            workers.clear();
+        }
+    }
+
+    /// Keeps the pairs for which `keep` returns true. It is called with the index of each pair and the pair.
+    pub fn retain(&mut self, mut keep: impl FnMut(u32, (u32, u32)) -> bool) {
+        let mut place = 0;
+        self.sorted.retain(|pair| {
+            place += 1;
+            keep(place - 1, *pair)
+        });
     }
 
     /// Forgets the pairs found last.

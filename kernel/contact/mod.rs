@@ -3,11 +3,12 @@
 //!
 //! `narrow_phase` is read top to bottom; `input`, `recycle`, `manifold_update`, `time_of_impact`, `calm`,
 //! `internal` and `impulse_transfer` are its helpers and do not depend on it. `modify` takes the embedder's
-//! changes to its results.
+//! changes to its results. `crowd` bounds the contacts of bodies in one place.
 
 mod buffers;
 mod calm;
 mod constraint;
+mod crowd;
 mod impulse_transfer;
 mod input;
 mod internal;

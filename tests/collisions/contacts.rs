@@ -218,3 +218,37 @@ fn names_and_signatures_are_avians() {
     manifold.match_contacts(&[old], 0.01);
     assert_eq!(manifold.points.iter().map(|p| p.warm_start_normal_impulse).collect::<Vec<_>>(), [0.0, 2.0]);
 }
+
+#[test]
+fn a_sensor_touches_all_bodies_that_are_in_one_place_and_they_come_apart() {
+    let mut app = app();
+    let sensor = (RigidBody::Dynamic, ball(20.0), Sensor, CollidingEntities::default(), at(0.0, 0.0));
+    let sensor = app.world_mut().spawn(sensor).id();
+    let mut crowd: Vec<Entity> = (0..100)
+        .map(|i| {
+            let body = (RigidBody::Dynamic, ball(0.25), at(0.001 * (i % 10) as f32, 0.001 * (i / 10) as f32));
+            app.world_mut().spawn((body, CollidingEntities::default(), SleepingDisabled)).id()
+        })
+        .collect();
+    crowd.sort();
+    step(&mut app);
+    assert_eq!(touched(&app, sensor), crowd);
+    // Only some of the pairs have contacts, until these have pushed the bodies apart.
+    assert!(crowd.iter().all(|ball| (10..60).contains(&touched(&app, *ball).len())));
+    steps(&mut app, 60);
+    // Ids are used again, and the rest is pushed apart.
+    crowd[..30].iter().for_each(|ball| _ = app.world_mut().despawn(*ball));
+    let late = (RigidBody::Dynamic, ball(0.25), at(0.0, 0.0), CollidingEntities::default(), SleepingDisabled);
+    let late = app.world_mut().spawn(late).id();
+    steps(&mut app, 900);
+    let mut left = [&crowd[30..], &[late]].concat();
+    left.sort();
+    assert_eq!(touched(&app, sensor), left);
+    let place = |ball: &Entity| app.world().get::<Position>(*ball).expect("it is a body").0;
+    for (i, a) in left.iter().enumerate() {
+        for b in &left[..i] {
+            let distance = (place(a) - place(b)).length();
+            assert!(distance > 0.48, "{a} and {b} are {distance} m apart");
+        }
+    }
+}

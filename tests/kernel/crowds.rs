@@ -3,6 +3,7 @@
 use super::dim::{container, sized, turned};
 use super::sim::Sim;
 use crate::kernel;
+use kernel::graph::COLOR_COUNT;
 use kernel::math::{Rot, Vector};
 use kernel::shape::{Ball, Cuboid, Shape};
 use kernel::table::BodyKind;
@@ -65,16 +66,68 @@ fn bodies_in_one_place_come_apart_gently() {
     }
 }
 
+/// Balls in one place leave it in all directions, with a bounded number of contacts, and no pair that touches
+/// is forgotten.
+fn spread(radius: impl Fn(usize) -> f32) {
+    let mut sim = Sim::new();
+    (sim.gravity, sim.checked, sim.sleeping) = (Vector::ZERO, false, false);
+    let count = 300;
+    let place = |i: usize| Vector::X * (0.002 * (i % 17) as f32) + Vector::Y * (0.002 * (i / 17) as f32);
+    let ids: Vec<u32> = (0..count).map(|i| sim.ball(radius(i), place(i))).collect();
+    let mut most = 0;
+    for _ in 0..900 {
+        sim.step();
+        most = most.max(sim.contacts.len());
+    }
+    assert!(most <= count * 2 * COLOR_COUNT, "{most} contacts of {count} balls in one place");
+    let mut overlaps = 0;
+    for (i, a) in ids.iter().enumerate() {
+        for (j, b) in ids[..i].iter().enumerate() {
+            let distance = (sim.position(*a) - sim.position(*b)).to_local().length();
+            let is_deep = distance < 0.9 * (radius(i) + radius(j));
+            let has_contact = sim.contacts.find(*b, *a).is_some();
+            assert!(!is_deep || has_contact, "{b} and {a} overlap at {distance} m, and have no contact");
+            overlaps += usize::from(is_deep);
+        }
+    }
+    // All 44,850 pairs did.
+    assert!(overlaps < count, "{overlaps} pairs still overlap");
+}
+
+#[test]
+fn contacts_of_a_crowd_are_bounded_and_none_is_forgotten() {
+    spread(|_| 0.25);
+    spread(|i| 0.05 + 0.001 * ((i * 7) % 300) as f32);
+}
+
+#[test]
+fn small_bodies_inside_a_large_one_leave_room_for_another() {
+    let mut sim = Sim::new();
+    (sim.gravity, sim.sleeping) = (Vector::ZERO, false);
+    let rock = sim.ball(0.5, Vector::ZERO);
+    let turn = |i: usize| turned(2.4 * i as f32).rotate(Vector::X * (0.4 - 0.005 * i as f32));
+    let pebbles: Vec<u32> = (0..60).map(|i| sim.ball(0.05, turn(i))).collect();
+    let crowd = sim.ball(0.4, Vector::Y * 0.1);
+    sim.step();
+    for id in [pebbles.as_slice(), &[crowd]].concat() {
+        assert!(sim.contacts.find(rock, id).is_some(), "{id} is pushed out of the rock");
+    }
+    sim.steps(600);
+    let gap = (sim.position(crowd) - sim.position(rock)).to_local().length() - 0.9;
+    assert!(gap > -0.02, "they overlap by {gap} m");
+}
+
 #[test]
 fn the_memory_of_a_crowd_is_given_back() {
     let mut sim = Sim::new();
     sim.checked = false;
     sim.floor();
     let kept = sim.ball(0.25, Vector::X * 20.0 + Vector::Y * 0.25);
-    let ids: Vec<u32> = (0..200).map(|_| sim.ball(0.25, Vector::Y * 2.0)).collect();
+    let ids: Vec<u32> = (0..1000).map(|_| sim.ball(0.25, Vector::Y * 2.0)).collect();
     sim.steps(5);
     let crowded = sim.contacts.capacity();
-    assert!(crowded >= 200 * 199 / 2, "{crowded} contacts");
+    let bound = 400 * COLOR_COUNT..2000 * COLOR_COUNT;
+    assert!(bound.contains(&crowded), "{crowded} contacts of 1,000 balls in one place");
     ids.iter().for_each(|id| sim.remove(*id));
     sim.checked = true;
     // Buffers that are in use are kept for some seconds.

@@ -413,11 +413,17 @@ impl Sim {
         let mut found = FoundPairs::default();
         found.find(&self.trees, &self.movers, self.contacts.pairs(), &self.pool);
         self.movers.clear();
-        for &(a, b) in found.pairs() {
-            let is_refused = [a, b].iter().any(|id| self.unpaired.contains(id))
-                || self.apart.contains(&[a.min(b), a.max(b)]);
+        found.retain(|_, (a, b)| {
+            let is_refused =
+                [a, b].iter().any(|id| self.unpaired.contains(id)) || self.apart.contains(&[a, b]);
             let [first, second] = [a, b].map(|id| &self.colliders[id].def);
-            if !is_refused && first.body != second.body && first.layers.interacts_with(second.layers) {
+            !is_refused && first.body != second.body && first.layers.interacts_with(second.layers)
+        });
+        let left_out = self.contact_manager().left_out(found.pairs());
+        for (place, &(a, b)) in found.pairs().iter().enumerate() {
+            if left_out.contains(place as u32) {
+                self.outgrown.insert(a);
+            } else {
                 self.contact_manager().create(a, b);
             }
         }

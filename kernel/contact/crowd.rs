@@ -1,0 +1,97 @@
+//! The bound on the contacts of bodies that were placed into each other.
+
+use super::manager::ContactManager;
+use crate::data::BitSet;
+use crate::graph::COLOR_COUNT;
+use crate::math::min;
+use crate::shape::Shape;
+use crate::table::{BodyKind, NONE};
+use crate::tuning::contact::DEEP;
+
+/// How full a collider is whose contacts were not looked at.
+const UNKNOWN: f32 = -1.0;
+
+impl ContactManager<'_> {
+    /// The pairs, by their indices, that get no contact yet. Bodies in one place come apart by a few contacts
+    /// each; contacts of all pairs, n² / 2, would only take time and memory. Look for these pairs again in the
+    /// next step: they get their contacts when the bodies have come apart, or when other contacts have ended.
+    ///
+    /// A collider is full while it has as many deep contacts as there are colours. A deep pair waits while
+    /// either collider is full. Other pairs wait while both are full, or one is and their boxes do not overlap.
+    /// Only solid convex colliders of dynamic bodies wait.
+    pub fn left_out(&self, pairs: &[(u32, u32)]) -> BitSet {
+        let (mut left_out, mut fills) = (BitSet::default(), Vec::new());
+        for (place, &(a, b)) in pairs.iter().enumerate() {
+            let pair = [a, b];
+            if let Some(shares) = self.deep_shares(pair) {
+                let filled = pair.map(|id| self.fill(id, &mut fills));
+                if filled.into_iter().any(is_full) {
+                    left_out.insert(place as u32);
+                } else {
+                    (0..2).for_each(|side| fills[pair[side] as usize] += shares[side]);
+                }
+            }
+        }
+        if left_out.is_empty() {
+            return left_out;
+        }
+        for (place, &(a, b)) in pairs.iter().enumerate() {
+            let pair = [a, b];
+            if left_out.contains(place as u32) || !self.is_bounded(pair) || self.deep_shares(pair).is_some() {
+                continue;
+            }
+            let [a, b] = pair.map(|id| is_full(self.fill(id, &mut fills)));
+            let overlap =
+                || self.colliders.tight[pair[0] as usize].overlaps(&self.colliders.tight[pair[1] as usize]);
+            if a && b || (a || b) && !overlap() {
+                left_out.insert(place as u32);
+            }
+        }
+        left_out
+    }
+
+    /// Whether both colliders are solid, convex, and on dynamic bodies.
+    fn is_bounded(&self, pair: [u32; 2]) -> bool {
+        pair.iter().all(|id| {
+            let def = &self.colliders[*id].def;
+            let is_convex =
+                !matches!(def.shape, Shape::Composite(_) | Shape::Foreign(_) | Shape::HalfSpace(_));
+            let is_dynamic = def.body != NONE && self.bodies[def.body].kind == BodyKind::Dynamic;
+            is_convex && is_dynamic && !def.flags.sensor
+        })
+    }
+
+    /// By how much a contact fills each collider, if the [balls within](Shape::core) the shapes overlap deeply:
+    /// by 1 from another of its size or larger, by the ratio of sizes from a smaller one.
+    fn deep_shares(&self, pair: [u32; 2]) -> Option<[f32; 2]> {
+        if !self.is_bounded(pair) {
+            return None;
+        }
+        let [(a, first), (b, second)] = pair.map(|id| {
+            let (center, radius) = self.colliders[id].def.shape.core();
+            (self.colliders.poses[id as usize].transform(center), radius)
+        });
+        let smaller = min(first, second);
+        let is_deep = smaller > 0.0 && (b - a).to_local().length() < first + second - DEEP * smaller;
+        is_deep.then(|| [smaller / first, smaller / second])
+    }
+
+    /// How full a collider is by the contacts that push it, and by those that were added to `fills`.
+    fn fill(&self, id: u32, fills: &mut Vec<f32>) -> f32 {
+        if fills.is_empty() {
+            fills.resize(self.colliders.poses.len(), UNKNOWN);
+        }
+        if fills[id as usize] == UNKNOWN {
+            let contacts = self.contacts.of_collider(id, self.colliders).map(|id| self.contacts.get(id));
+            let shares = contacts.filter(|contact| contact.is_solved()).filter_map(|contact| {
+                Some(self.deep_shares(contact.colliders)?[usize::from(contact.colliders[1] == id)])
+            });
+            fills[id as usize] = shares.sum();
+        }
+        fills[id as usize]
+    }
+}
+
+fn is_full(fill: f32) -> bool {
+    fill >= COLOR_COUNT as f32
+}
