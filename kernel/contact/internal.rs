@@ -10,10 +10,9 @@
 //! Only manifolds between moving colliders and ground are compared. Ground is a body that is not dynamic, or
 //! a dynamic body at rest. The result depends on positions and velocities, not on the number of threads.
 
-use super::buffers::WorkerBuffers;
 use super::impulse_transfer;
 use super::input::{NarrowPhaseInput, smaller};
-use super::manifold_update;
+use super::manifold_update::{self, WorkerBuffers};
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint, Parallel, Sliding};
 use super::table::{ContactTable, PointCount};
 use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};

@@ -4,8 +4,8 @@
 //! edges. The axis is selected as in [`axis`](super::axis).
 
 use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Pair as _, Sizes};
+use super::clip::Patch;
 use super::convex;
-use super::reduce::Patch;
 use super::view::{MatrixPose, Small};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{F32x4, Lane, Num, Vector, clamp, max, min};

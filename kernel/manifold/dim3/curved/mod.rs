@@ -6,15 +6,14 @@
 //! apart along the best axis so far, and this is repeated until the axis stays; with little overlap this
 //! takes two or three rounds.
 
-mod deep;
 mod patch;
 mod rim;
 mod shape_features;
 #[cfg(test)]
 mod tests;
 
+use super::clip::keep;
 use super::gjk;
-use super::reduce::keep;
 use super::round::unit_or;
 use super::view::{MatrixPose, View, with_view};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
@@ -444,7 +443,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         if self.is_best(&near.0, near.1) {
             return near;
         }
-        let Some(normal) = deep::shallowest(self.a, self.b, &self.b_in_a) else { return near };
+        let Some(normal) = gjk::shallowest(self.a, self.b, &self.b_in_a) else { return near };
         let axis = Found { axis: Axis::Line, normal, separation: self.separation(normal) };
         let all = self.refine(&axis);
         if all.0.separation > near.0.separation { all } else { near }

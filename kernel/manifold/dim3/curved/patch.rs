@@ -5,8 +5,7 @@
 //! full circle stands on four points that keep their positions in the other shape's frame, so that no point
 //! moves while a cylinder turns.
 
-use super::super::clip::clip_line;
-use super::super::reduce::{Candidates, MAX_CANDIDATES};
+use super::super::clip::{Candidates, MAX_CANDIDATES, clip_line};
 use super::super::round::Lines;
 use crate::manifold::LocalPoint;
 use crate::math::{Vector, atan2, min, sin_cos};

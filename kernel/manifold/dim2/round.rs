@@ -1,13 +1,60 @@
-//! Two segments with radii: capsules and segments.
-//!
-//! Edge normals do not separate segments on one line, so the closest points are computed first.
+//! Contacts of balls and segments with radii: a ball with a ball or polygon, and two segments.
 
 use super::super::{LocalManifold, PairInput};
-use super::clip::{Facing, Side};
-use super::points::Limits;
-use super::polygonal::{Edge, Polygonal};
+use super::polygonal::{Edge, Facing, Limits, Polygonal, Side, push_between};
 use crate::math::Vector;
 use crate::tuning::manifold::ALIKE;
+
+/// Two balls. The normal of concentric balls is upward.
+pub(super) fn collide_points(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, .. } = input;
+    let (p, q) = (a.vertices[0], pose.transform(b.vertices[0]));
+    out.normal = push_between(p, q, Vector::Y, Limits { radii: [a.radius, b.radius], prediction }, 0, out);
+}
+
+/// A polygon `a` and a ball `b`: the edge with the largest separation of the centre, or one of its ends if
+/// the centre is beyond it.
+pub(super) fn collide_with_point(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, .. } = input;
+    let center = pose.transform(b.vertices[0]);
+    let limits = Limits { radii: [a.radius, b.radius], prediction };
+    let reach = prediction + a.radius + b.radius;
+    let mut best = (f32::NEG_INFINITY, 0);
+    for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
+        let height = (center - *v).dot(*n);
+        if height > reach {
+            out.gap = height - a.radius - b.radius;
+            return;
+        }
+        if height > best.0 {
+            best = (height, i);
+        }
+    }
+    let (height, i) = best;
+    let (start, end, normal) = (a.vertices[i], a.vertices[a.next(i)], a.normals[i]);
+    // The ends of a segment have no normals, so a centre on its line may still be beyond them.
+    if height > 0.0 || a.len() == 2 {
+        let axis = end - start;
+        let corner = if (center - start).dot(axis) < 0.0 {
+            Some(start)
+        } else if (center - end).dot(axis) > 0.0 {
+            Some(end)
+        } else {
+            None
+        };
+        if let Some(corner) = corner {
+            out.normal = push_between(corner, center, normal, limits, 0, out);
+            return;
+        }
+    }
+    let separation = height - a.radius - b.radius;
+    if separation <= prediction {
+        out.normal = normal;
+        out.push(center - normal * (0.5 * (height - a.radius + b.radius)), separation, 0);
+    } else {
+        out.gap = separation;
+    }
+}
 
 /// An end of a segment against the other segment.
 #[derive(Clone, Copy)]
@@ -23,8 +70,9 @@ struct Candidate {
     square: f32,
 }
 
-/// Fills `out` for two segments. Parallel segments side by side get two points.
-pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+/// Two segments with radii. Parallel segments side by side get two points. Edge normals do not separate
+/// segments on one line, so the closest points are computed first.
+pub(super) fn collide_segments(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
     let PairInput { pose, prediction, .. } = input;
     let p = [a.vertices[0], a.vertices[1]];
     let q = [pose.transform(b.vertices[0]), pose.transform(b.vertices[1])];
