@@ -140,6 +140,11 @@ impl LocalManifold {
         &self.points[..self.count]
     }
 
+    /// The valid points, to change.
+    pub(super) fn points_mut(&mut self) -> impl Iterator<Item = &mut LocalPoint> {
+        self.points[..self.count].iter_mut()
+    }
+
     /// Whether the motion has to bring the shapes together at some of the points.
     pub fn is_met_later(&self) -> bool {
         self.points().iter().any(|p| p.closing != 0.0)
@@ -162,8 +167,7 @@ impl LocalManifold {
             _ => return,
         };
         let half = self.normal * (0.5 * side);
-        let count = self.count;
-        self.points[..count].iter_mut().for_each(|p| p.point += half * p.closing);
+        self.points_mut().for_each(|p| p.point += half * p.closing);
     }
 
     /// Adds a point of shapes that are near at the present pose.
@@ -187,9 +191,7 @@ impl LocalManifold {
         out.normal = pose.rotation.inverse_rotate(-self.normal);
         out.radii = [self.radii[1], self.radii[0]];
         out.groups = [self.groups[1], self.groups[0]];
-        for p in &mut out.points[..self.count] {
-            p.point = pose.inverse_transform(p.point);
-        }
+        out.points_mut().for_each(|p| p.point = pose.inverse_transform(p.point));
         out
     }
 }

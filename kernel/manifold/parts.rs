@@ -53,6 +53,15 @@ struct ReplacedContact {
     is_redundant: bool,
 }
 
+impl ReplacedContact {
+    /// A contact of a normal and least separation, if the face contact that replaced it, with a normal and
+    /// least separation too, is uncertain.
+    fn new(normal: Vector, nearest: f32, by: (Vector, f32), prediction: f32) -> Option<Self> {
+        let is_uncertain = by.0.dot(normal) < TURNED || by.1 < nearest - SAME * prediction;
+        is_uncertain.then_some(Self { normal, nearest, share: 0.0, is_redundant: false })
+    }
+}
+
 /// The closed surface that a facet is part of.
 #[derive(Clone, Copy)]
 pub(super) struct ClosedSurface<'a> {
@@ -113,20 +122,18 @@ impl<'a> PartQuery<'a> {
         query: ManifoldQuery<'a>,
         alone: bool,
     ) -> Self {
-        let (other_group, name) = (0, 0);
-        let (on_composite, is_b, cache, closed_surface) = (false, false, None, None);
         Self {
             composite,
             other,
             pose,
             query,
-            other_group,
-            name,
+            other_group: 0,
+            name: 0,
             alone,
-            on_composite,
-            is_b,
-            cache,
-            closed_surface,
+            on_composite: false,
+            is_b: false,
+            cache: None,
+            closed_surface: None,
         }
     }
 
@@ -289,9 +296,8 @@ impl<'a> PartQuery<'a> {
         replaced: Option<ReplacedContact>,
         buffers: &mut PartBuffers,
     ) {
-        let count = local.count;
         local.groups = [self.query.group(0, part), self.other_group];
-        local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
+        local.points_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
         buffers.found.push(local);
         buffers.replaced_contacts.push(replaced);
     }
@@ -324,13 +330,14 @@ impl<'a> PartQuery<'a> {
         if let Some(closed_surface) = self.closed_surface.filter(|_| local.count > 0) {
             let (normal, nearest) = (local.normal, local.lower_bound());
             self.keep_outside(&closed_surface, part, prediction, local);
-            let is_turned = local.normal.dot(normal) < TURNED;
-            if local.count > 0 && (is_turned || local.lower_bound() < nearest - SAME * prediction) {
-                return Some(ReplacedContact { normal, nearest, share: 0.0, is_redundant: false });
+            let by = (local.normal, local.lower_bound());
+            let replaced = ReplacedContact::new(normal, nearest, by, prediction);
+            if replaced.is_some() && local.count > 0 {
+                return replaced;
             }
         }
-        let surface = self.composite.surface().filter(|_| local.count > 0);
-        surface.and_then(|surface| self.keep_on_surface(surface, part, prediction, local))
+        let surface = self.composite.surface().filter(|_| local.count > 0)?;
+        self.keep_on_surface(surface, part, prediction, local)
     }
 
     /// Whether the motion may lead past a part that has points: it crosses their plane.
@@ -378,7 +385,7 @@ impl<'a> PartQuery<'a> {
                     collide_pair(solid, self.other.shape, input, local);
                 }
                 local.normal = at.rotation.rotate(local.normal);
-                local.points[..local.count].iter_mut().for_each(|p| p.point = at.transform(p.point));
+                local.points_mut().for_each(|p| p.point = at.transform(p.point));
             }
             (None, None) => local.count = 0,
         }
@@ -444,8 +451,7 @@ impl<'a> PartQuery<'a> {
             _ => self.on_composite,
         };
         let back = if on_composite { half } else { way - half };
-        let count = local.count;
-        for p in &mut local.points[..count] {
+        for p in local.points_mut() {
             p.point -= back;
             p.separation -= along;
             p.closing = -along;
@@ -537,8 +543,7 @@ impl<'a> PartQuery<'a> {
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
         self.collide_face(corners, own, prediction, local);
-        let is_uncertain = own.dot(found) < TURNED || local.lower_bound() < nearest - SAME * prediction;
-        is_uncertain.then_some(ReplacedContact { normal: found, nearest, share: 0.0, is_redundant: false })
+        ReplacedContact::new(found, nearest, (own, local.lower_bound()), prediction)
     }
 }
 
