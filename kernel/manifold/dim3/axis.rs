@@ -13,7 +13,6 @@
 //! lowest over the best face, since shapes touch near there. Two hulls with 12 vertices have 40 faces and 900
 //! pairs of edges: about nine faces and a tenth of the pairs remain.
 
-use super::gjk;
 use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold};
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
@@ -93,16 +92,22 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
+    /// Of a pair with these extents. `radius` is the sum of the radii around both cores.
+    #[inline(always)]
+    pub fn new(prediction: f32, radius: f32, [a, b]: [f32; 2]) -> Self {
+        Self { prediction, radius, smaller: min(a, b), larger: max(a, b) }
+    }
+
     /// Cores farther apart than this have no contact.
     #[inline(always)]
     pub fn limit(&self) -> f32 {
         self.prediction + self.radius
     }
 
-    /// See [`gjk::resolution`].
+    /// The distance below which the closest points have no direction. Below it, separating axes are used.
     #[inline(always)]
-    fn resolution(&self) -> f32 {
-        gjk::resolution(self.larger, self.smaller)
+    pub fn resolution(&self) -> f32 {
+        max(1.0e-3 * self.smaller, 1.0e-5 * self.larger)
     }
 }
 
@@ -230,7 +235,8 @@ pub(super) fn best_face(this: &View, other: &View, frame: &MatrixPose, limit: f3
     if this.faces.is_empty() {
         return FaceAxis { face: 0, of_b: false, separation: f32::NEG_INFINITY, lowest: 0 };
     }
-    let mut best = face_separation(this, face_under(this, frame.point(other.center)), other, frame);
+    let (first, _) = face_under(this, [frame.point(other.center)]);
+    let mut best = face_separation(this, first, other, frame);
     let mut point = frame.point(other.vertices[best.lowest]);
     for (i, block) in this.face_blocks.iter().enumerate() {
         if best.separation > limit {
@@ -253,19 +259,25 @@ pub(super) fn best_face(this: &View, other: &View, frame: &MatrixPose, limit: f3
     best
 }
 
-/// The face with the largest height of a point over it.
-fn face_under(view: &View, point: Vector) -> usize {
-    let point = Vector::<F32x4>::splat(point);
+/// The face with the largest height of the lowest of some points over it, and this height.
+#[inline(always)]
+pub(super) fn face_under<const N: usize>(view: &View, points: [Vector; N]) -> (usize, f32) {
+    let points = points.map(Vector::<F32x4>::splat);
     let mut best = F32x4::splat(f32::NEG_INFINITY);
     let (mut at, mut number) = (F32x4::ZERO, F32x4::ZERO);
     for block in view.face_blocks {
-        let height = block.normal.dot(point) - block.offset;
+        let mut height = block.normal.dot(points[0]);
+        for point in &points[1..] {
+            height = height.min(block.normal.dot(*point));
+        }
+        let height = height - block.offset;
         let better = best.lt(height);
         best = F32x4::select(better, height, best);
         at = F32x4::select(better, number, at);
         number += F32x4::ONE;
     }
-    largest(best, at).0.min(view.faces.len() - 1)
+    let (face, height) = largest(best, at);
+    (face.min(view.faces.len() - 1), height)
 }
 
 /// Which of four edges, as bits, may have an axis along which `point` of the other polyhedron is not deeper

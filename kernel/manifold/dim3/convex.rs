@@ -3,7 +3,7 @@
 use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Known, Pair as _, Sizes};
 use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference, clip_line};
 use super::gjk;
-use super::view::{MatrixPose, View, extents};
+use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{Vector, clamp, max};
 use crate::shape::Edge;
@@ -107,8 +107,7 @@ impl axis::Pair for Pair<'_> {
 impl<'a> Pair<'a> {
     pub fn new(a: &'a View<'a>, b: &'a View<'a>, input: PairInput) -> Self {
         let b_in_a = MatrixPose::new(input.pose);
-        let (larger, smaller) = extents(a, b);
-        let sizes = Sizes { prediction: input.prediction, radius: a.radius + b.radius, smaller, larger };
+        let sizes = Sizes::new(input.prediction, a.radius + b.radius, [a.extent, b.extent]);
         Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
     }
 

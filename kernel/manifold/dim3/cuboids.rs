@@ -30,10 +30,8 @@ struct Pair<'a> {
 pub(in crate::manifold) fn collide(a: &Cuboid, b: &Cuboid, input: PairInput, out: &mut LocalManifold) {
     let (half_a, half_b) = (a.half, b.half);
     let frame = MatrixPose::new(input.pose);
-    let (size_a, size_b) = (half_a.max_element(), half_b.max_element());
-    let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
     let offset = [frame.position, frame.direction_in(frame.position)];
-    let sizes = Sizes { prediction: input.prediction, radius: 0.0, smaller, larger };
+    let sizes = Sizes::new(input.prediction, 0.0, [half_a.max_element(), half_b.max_element()]);
     Pair { half_a, half_b, frame, offset, input, sizes }.collide(input.cache, out);
 }
 

@@ -5,7 +5,7 @@
 //! arcs of 180° on the Gauss map, and often a proof that the face is the best axis, which saves the search
 //! for others. Everything is in the polyhedron's frame.
 
-use super::axis::{self, Axis, EdgeAxis, FaceAxis, Pair as _, Sizes, open_edges, remaining};
+use super::axis::{self, Axis, EdgeAxis, FaceAxis, Pair as _, Sizes, face_under, open_edges, remaining};
 use super::clip::{
     self, Candidates, Corner, FEW_CORNERS, LEAST_CORNERS, MAX_CANDIDATES, MAX_CORNERS, Polygon, Reference,
     keep,
@@ -18,7 +18,7 @@ use crate::manifold::border::{Border, is_beside};
 use crate::manifold::pairs::{collide_pair, drop_unusable, is_near};
 use crate::manifold::{LocalManifold, LocalPoint, PairInput};
 use crate::math::{F32x4, Lane, Num, Vector, max, min};
-use crate::shape::{Shape, Triangle, largest};
+use crate::shape::{Shape, Triangle};
 use crate::tuning::manifold::{MARGIN, PARALLEL, REACH};
 
 /// The unit normal of a triangle, counter-clockwise from outside; `None` if it has no area.
@@ -370,12 +370,7 @@ impl<'a> Pair<'a> {
             prism,
             view,
             frame,
-            sizes: Sizes {
-                prediction: input.prediction,
-                radius: view.radius,
-                smaller: min(extent, view.extent),
-                larger: max(extent, view.extent),
-            },
+            sizes: Sizes::new(input.prediction, view.radius, [extent, view.extent]),
             nearest: FaceAxis { face: 0, of_b: false, separation: f32::NEG_INFINITY, lowest: 0 },
             open: SIDES,
         })
@@ -399,22 +394,10 @@ impl<'a> Pair<'a> {
 
     /// The polyhedron's face with the largest separation.
     fn best_face_of_view(&self) -> FaceAxis {
-        let corners = self.corners.map(Vector::<F32x4>::splat);
-        let mut best = F32x4::splat(f32::NEG_INFINITY);
-        let (mut at, mut number) = (F32x4::ZERO, F32x4::ZERO);
-        for block in self.view.face_blocks {
-            let [a, b, c] = corners.map(|corner| block.normal.dot(corner));
-            let height = a.min(b).min(c) - block.offset;
-            let better = best.lt(height);
-            best = F32x4::select(better, height, best);
-            at = F32x4::select(better, number, at);
-            number += F32x4::ONE;
-        }
         if self.view.faces.is_empty() {
             return FaceAxis { face: 0, of_b: true, separation: f32::NEG_INFINITY, lowest: 0 };
         }
-        let (face, separation) = largest(best, at);
-        let face = face.min(self.view.faces.len() - 1);
+        let (face, separation) = face_under(self.view, self.corners);
         let normal = self.view.faces[face].normal;
         let lowest = greatest(self.corners.map(|corner| -corner.dot(normal)));
         FaceAxis { face, of_b: true, separation, lowest }

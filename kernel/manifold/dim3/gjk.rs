@@ -12,7 +12,7 @@
 use super::view::{MatrixPose, View};
 use crate::distance::gjk::{Accuracy, Difference, Search, Vertex};
 use crate::manifold::LocalManifold;
-use crate::math::{Vector, max};
+use crate::math::Vector;
 use crate::shape::Curved;
 use crate::tuning::manifold::{FLAT, SAME};
 
@@ -131,12 +131,6 @@ pub(super) fn closest_within<A: Core, B: Core>(
         distance: if found.gap > limit { found.gap } else { found.distance } as f32,
         feature: mask(0) << 15 | mask(1),
     })
-}
-
-/// The distance below which the closest points of shapes with these extents have no direction. Below it,
-/// separating axes are used.
-pub(super) fn resolution(larger: f32, smaller: f32) -> f32 {
-    max(1.0e-3 * smaller, 1.0e-5 * larger)
 }
 
 type Wide = Vector<f64>;

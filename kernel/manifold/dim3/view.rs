@@ -1,8 +1,8 @@
 //! A view of every polyhedral core: hulls by reference; boxes, triangles, segments and points as scaled
 //! copies on the stack. The same code collides all of them.
 
-use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
-use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, Shape, farthest};
+use crate::math::{F32x4, Lane, Num, Pose, Vector, max};
+use crate::shape::{Edge, EdgeBlock, Face, FaceBlock, Hull, Shape, farthest};
 
 /// The convex polyhedron, possibly flat, that a shape is without its radius.
 #[derive(Clone, Copy)]
@@ -299,11 +299,6 @@ impl Small {
         small
     }
 
-    /// The core of a capsule.
-    pub fn capsule(capsule: &Capsule) -> Self {
-        Self::segment(capsule.a, capsule.b, capsule.radius)
-    }
-
     /// Packs the vertices of a polyhedron with up to four. Vertices after the last repeat it.
     #[inline(always)]
     fn fill_block(&mut self) {
@@ -345,7 +340,7 @@ pub(super) fn with_view<R>(shape: &Shape, f: impl FnOnce(Option<&View>) -> R) ->
         Shape::Hull(hull) => return f(Some(&View::from(&**hull))),
         Shape::Cuboid(s) => Small::cuboid(s.half),
         Shape::Triangle(s) => Small::triangle([s.a, s.b, s.c]),
-        Shape::Capsule(s) => Small::capsule(s),
+        Shape::Capsule(s) => Small::segment(s.a, s.b, s.radius),
         Shape::Segment(s) => Small::segment(s.a, s.b, 0.0),
         Shape::Ball(s) => Small::point(Vector::ZERO, s.radius),
         Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => return f(None),
@@ -420,9 +415,4 @@ impl MatrixPose {
         let [x, y, z] = self.axes.map(|axis| Vector::<N>::splat(axis).dot(v));
         Vector { x, y, z }
     }
-}
-
-/// The larger of two extents, and the smaller.
-pub(super) fn extents(a: &View, b: &View) -> (f32, f32) {
-    (max(a.extent, b.extent), min(a.extent, b.extent))
 }
