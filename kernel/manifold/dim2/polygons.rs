@@ -38,13 +38,11 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
         return;
     }
     let on_a = most_separating(a, b, &inverse, reach);
-    if on_a.separation > reach {
-        cache.set(cache_of(Side::A, on_a));
-        out.gap = on_a.separation - a.radius - b.radius;
-        return;
-    }
-    let on_b = most_separating(b, a, pose, reach);
-    let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
+    let (side, best) = if on_a.separation > reach {
+        (Side::A, on_a)
+    } else {
+        choose(on_a, most_separating(b, a, pose, reach), known, preference(prediction, pose))
+    };
     cache.set(cache_of(side, best));
     if best.separation > reach {
         out.gap = best.separation - a.radius - b.radius;

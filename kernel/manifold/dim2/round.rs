@@ -34,16 +34,9 @@ pub(super) fn collide_with_point(a: &Polygonal, b: &Polygonal, input: PairInput,
     let (start, end, normal) = (a.vertices[i], a.vertices[a.next(i)], a.normals[i]);
     // The ends of a segment have no normals, so a centre on its line may still be beyond them.
     if height > 0.0 || a.len() == 2 {
-        let axis = end - start;
-        let corner = if (center - start).dot(axis) < 0.0 {
-            Some(start)
-        } else if (center - end).dot(axis) > 0.0 {
-            Some(end)
-        } else {
-            None
-        };
-        if let Some(corner) = corner {
-            out.normal = push_between(corner, center, normal, limits, 0, out);
+        let ends = [start, end];
+        if let Some(i) = nearest_end(ends.map(|end| center - end), end - start) {
+            out.normal = push_between(ends[i], center, normal, limits, 0, out);
             return;
         }
     }
@@ -128,15 +121,22 @@ fn opposite(a: f32, b: f32) -> bool {
 fn candidate(side: Side, own: [Vector; 2], axis: Vector, other: [Vector; 2], end: usize) -> Candidate {
     let from = [other[end] - own[0], other[end] - own[1]];
     let height = from[0].dot(axis.perp());
-    let corner = if from[0].dot(axis) < 0.0 {
+    let corner = nearest_end(from, axis);
+    let square = corner.map_or(height * height, |c| from[c].length_squared());
+    Candidate { side, end, corner, height, square }
+}
+
+/// The end of a segment along `axis` that is nearest to a point beyond it; `None` if the point is beside the
+/// segment. `from` leads from each end to the point.
+#[inline(always)]
+fn nearest_end(from: [Vector; 2], axis: Vector) -> Option<usize> {
+    if from[0].dot(axis) < 0.0 {
         Some(0)
     } else if from[1].dot(axis) > 0.0 {
         Some(1)
     } else {
         None
-    };
-    let square = corner.map_or(height * height, |c| from[c].length_squared());
-    Candidate { side, end, corner, height, square }
+    }
 }
 
 /// The end with the least depth behind the other segment's line.
