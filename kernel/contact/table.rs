@@ -24,8 +24,6 @@ pub struct ContactTable {
     pairs: PairSet,
     /// Contacts with an awake body.
     pub(super) active: BitSet,
-    /// The number of active contacts.
-    active_count: usize,
     /// Contacts that are active in this update only.
     pub(super) visited: Vec<u32>,
     /// Whether the solver sums the impulses of each point over the substeps of a step, for apps that read
@@ -130,7 +128,7 @@ impl ContactTable {
 
     /// The number of contacts with an awake body.
     pub fn active_len(&self) -> usize {
-        self.active_count
+        self.active.count()
     }
 
     /// Whether a contact has an awake body.
@@ -317,13 +315,13 @@ impl ContactTable {
 
     pub(super) fn activate(&mut self, id: u32) {
         debug_assert!(self.is_live(id), "contact {id} is in use");
-        self.active_count += usize::from(self.active.insert(id));
+        self.active.insert(id);
         // The bodies have travelled meanwhile, and the travel may have wrapped around.
         self.contacts[id as usize].flags.set(ContactFlags::CALM, false);
     }
 
     pub(super) fn deactivate(&mut self, id: u32) {
-        self.active_count -= usize::from(self.active.remove(id));
+        self.active.remove(id);
     }
 
     /// The contacts of a collider.
@@ -346,7 +344,6 @@ impl ContactTable {
     ///
     /// If an invariant does not hold; the message names it.
     pub fn validate(&self, colliders: &ColliderTable) {
-        assert_eq!(self.active.count(), self.active_count, "active contacts are counted");
         assert!(self.active.iter().all(|id| self.is_live(id)), "an active contact is live");
         let mut live = 0;
         for (id, contact) in self.iter() {
