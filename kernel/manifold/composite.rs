@@ -37,13 +37,12 @@ pub fn collide_composite(
     buffers: &mut CompositeBuffers,
     out: &mut Vec<LocalManifold>,
 ) -> f32 {
-    let cache = Cell::new(buffers.cache);
-    let gap = collide_parts([a, b], pose_b_in_a, query, false, &cache, &mut buffers.parts);
-    buffers.cache = cache.get();
+    let CompositeBuffers { cache, parts, merging } = buffers;
+    let gap = collide_parts([a, b], pose_b_in_a, query, false, Cell::from_mut(cache), parts);
     let start = out.len();
-    merge(&mut buffers.parts.found, &mut buffers.merging, out);
+    merge(&mut parts.found, merging, out);
     out[start..].iter_mut().for_each(|m| m.place_on_mover(query.ground));
-    if buffers.parts.found.is_empty() { gap } else { 0.0 }
+    if parts.found.is_empty() { gap } else { 0.0 }
 }
 
 /// Adds the manifolds of all parts in A's frame, each part on its own: of parts within the prediction, and of
@@ -203,8 +202,7 @@ fn merge(found: &mut [LocalManifold], room: &mut Merging, out: &mut Vec<LocalMan
         out.push(*only);
         return;
     }
-    let depth = |m: &LocalManifold| m.points().iter().fold(f32::INFINITY, |low, p| min(low, p.separation));
-    found.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+    found.sort_by(|a, b| a.lower_bound().total_cmp(&b.lower_bound()));
     groups.clear();
     let start = out.len();
     for m in found.iter() {

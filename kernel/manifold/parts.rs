@@ -24,7 +24,7 @@ const FEW_VERTICES: usize = 64;
 pub(super) struct PartBuffers {
     parts: Vec<u32>,
     pub(super) found: Vec<LocalManifold>,
-    /// For each manifold of `found`, the contact that it replaced, if it is uncertain.
+    /// For each manifold that the present query found, the contact that it replaced, if it is uncertain.
     replaced_contacts: Vec<Option<ReplacedContact>>,
     /// Near parts that the motion may lead past, with their present contacts.
     passing: Vec<(u32, LocalManifold, Option<ReplacedContact>)>,
@@ -49,8 +49,6 @@ struct ReplacedContact {
     nearest: f32,
     /// The share of the motion after which the facet meets the other shape.
     share: f32,
-    /// Whether the face contact is dropped.
-    is_redundant: bool,
 }
 
 impl ReplacedContact {
@@ -58,7 +56,7 @@ impl ReplacedContact {
     /// least separation too, is uncertain.
     fn new(normal: Vector, nearest: f32, by: (Vector, f32), prediction: f32) -> Option<Self> {
         let is_uncertain = by.0.dot(normal) < TURNED || by.1 < nearest - SAME * prediction;
-        is_uncertain.then_some(Self { normal, nearest, share: 0.0, is_redundant: false })
+        is_uncertain.then_some(Self { normal, nearest, share: 0.0 })
     }
 }
 
@@ -210,18 +208,15 @@ impl<'a> PartQuery<'a> {
     /// Drops uncertain contacts from `buffers.found[start..]` that other contacts make redundant.
     fn drop_redundant(&self, start: usize, buffers: &mut PartBuffers) {
         let PartBuffers { found, replaced_contacts, .. } = buffers;
-        for i in start..found.len() {
-            if let Some(replaced) = replaced_contacts[i] {
-                let is_redundant =
-                    self.is_redundant(&replaced, &found[i], &found[start..], &replaced_contacts[start..]);
-                replaced_contacts[i] = Some(ReplacedContact { is_redundant, ..replaced });
+        for (i, replaced) in (start..).zip(replaced_contacts.iter()) {
+            if let Some(replaced) = replaced
+                && self.is_redundant(replaced, &found[i], &found[start..], replaced_contacts)
+            {
+                found[i].count = 0;
             }
         }
-        let is_kept =
-            |replaced: &Option<ReplacedContact>| !replaced.is_some_and(|replaced| replaced.is_redundant);
-        let mut all = replaced_contacts.iter();
-        found.retain(|_| all.next().is_some_and(is_kept));
-        replaced_contacts.retain(is_kept);
+        found.retain(|m| m.count > 0);
+        replaced_contacts.clear();
     }
 
     /// Whether an uncertain contact is redundant, because a certain contact bears the same load. The side
