@@ -27,10 +27,7 @@ impl ContactManager<'_> {
     /// Removes a constraint that is not a contact. Wakes its bodies if it was solved.
     pub(crate) fn disconnect(&mut self, kind: ConstraintKind, id: u32) {
         let constraint = ConstraintId { kind, id };
-        let tie = self.tie(constraint);
-        if tie.is_solved {
-            self.wake_bodies(tie.bodies);
-        }
+        self.wake_if_solved(constraint);
         self.detach(constraint);
         self.bodies.constraints_mut(kind).remove(id);
     }
@@ -63,6 +60,14 @@ impl ContactManager<'_> {
         let constraint = self.bodies.constraints(kind).get(id);
         let is_solved = self.movable(constraint.bodies) != [None; 2];
         Tie { bodies: constraint.bodies, is_solved, slot: constraint.slot }
+    }
+
+    /// Wakes both bodies of a constraint that is solved.
+    pub(super) fn wake_if_solved(&mut self, constraint: ConstraintId) {
+        let tie = self.tie(constraint);
+        if tie.is_solved {
+            self.wake_bodies(tie.bodies);
+        }
     }
 
     fn set_slot(&mut self, ConstraintId { kind, id }: ConstraintId, slot: Option<ColorSlot>) {

@@ -8,9 +8,6 @@ use crate::shape::Shape;
 use crate::table::{BodyKind, NONE};
 use crate::tuning::contact::DEEP;
 
-/// How full a collider is whose contacts were not looked at.
-const UNKNOWN: f32 = -1.0;
-
 impl ContactManager<'_> {
     /// The pairs, by their indices, that get no contact yet. Bodies in one place come apart by a few contacts
     /// each; contacts of all pairs, n² / 2, would only take time and memory. Look for these pairs again in the
@@ -24,11 +21,10 @@ impl ContactManager<'_> {
         for (place, &(a, b)) in pairs.iter().enumerate() {
             let pair = [a, b];
             if let Some(shares) = self.deep_shares(pair) {
-                let filled = pair.map(|id| self.fill(id, &mut fills));
-                if filled.into_iter().any(is_full) {
+                if pair.iter().any(|id| is_full(*self.fill(*id, &mut fills))) {
                     left_out.insert(place as u32);
                 } else {
-                    (0..2).for_each(|side| fills[pair[side] as usize] += shares[side]);
+                    (0..2).for_each(|side| *self.fill(pair[side], &mut fills) += shares[side]);
                 }
             }
         }
@@ -40,7 +36,7 @@ impl ContactManager<'_> {
             if left_out.contains(place as u32) || !self.is_bounded(pair) || self.deep_shares(pair).is_some() {
                 continue;
             }
-            let [a, b] = pair.map(|id| is_full(self.fill(id, &mut fills)));
+            let [a, b] = pair.map(|id| is_full(*self.fill(id, &mut fills)));
             let overlap =
                 || self.colliders.tight[pair[0] as usize].overlaps(&self.colliders.tight[pair[1] as usize]);
             if a && b || (a || b) && !overlap() {
@@ -76,19 +72,18 @@ impl ContactManager<'_> {
         is_deep.then(|| [smaller / first, smaller / second])
     }
 
-    /// How full a collider is by the contacts that push it, and by those that were added to `fills`.
-    fn fill(&self, id: u32, fills: &mut Vec<f32>) -> f32 {
+    /// How full a collider is, by the contacts that push it and by pairs that are added to it.
+    fn fill<'f>(&self, id: u32, fills: &'f mut Vec<Option<f32>>) -> &'f mut f32 {
         if fills.is_empty() {
-            fills.resize(self.colliders.poses.len(), UNKNOWN);
+            fills.resize(self.colliders.poses.len(), None);
         }
-        if fills[id as usize] == UNKNOWN {
+        fills[id as usize].get_or_insert_with(|| {
             let contacts = self.contacts.of_collider(id, self.colliders).map(|id| self.contacts.get(id));
             let shares = contacts.filter(|contact| contact.is_solved()).filter_map(|contact| {
                 Some(self.deep_shares(contact.colliders)?[usize::from(contact.colliders[1] == id)])
             });
-            fills[id as usize] = shares.sum();
-        }
-        fills[id as usize]
+            shares.sum()
+        })
     }
 }
 

@@ -23,7 +23,7 @@ pub(super) struct PreviousManifold {
 }
 
 /// The unit normal towards a side of a contact.
-fn toward(side: usize, m: &Manifold) -> Vector {
+pub(super) fn toward(side: usize, m: &Manifold) -> Vector {
     if side == 0 { -m.normal } else { m.normal }
 }
 
@@ -162,15 +162,8 @@ impl ContactTable {
         for (id, index, side, m) in self.sliding_manifolds(input, collider).filter(|(.., m)| !m.is_internal) {
             let offset = self.get(id).frozen.offset;
             for (p, point) in m.points().iter().zip(0..).filter(|(p, _)| p.separation < input.tolerance) {
-                let (order, normal) = (points.len() as u32, toward(side, m));
-                points.push(LoadPoint {
-                    contact: id,
-                    index,
-                    point,
-                    order,
-                    place: place(side, p, offset),
-                    normal,
-                });
+                let (order, place, normal) = (points.len() as u32, place(side, p, offset), toward(side, m));
+                points.push(LoadPoint { contact: id, index, point, order, place, normal });
             }
         }
     }

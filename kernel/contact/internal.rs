@@ -10,10 +10,9 @@
 //! Only manifolds between moving colliders and ground are compared. Ground is a body that is not dynamic, or
 //! a dynamic body at rest. The result depends on positions and velocities, not on the number of threads.
 
-use super::buffers::WorkerBuffers;
 use super::impulse_transfer;
 use super::input::{NarrowPhaseInput, smaller};
-use super::manifold_update;
+use super::manifold_update::{self, WorkerBuffers};
 use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint, Parallel, Sliding};
 use super::table::{ContactTable, PointCount};
 use crate::math::{NormalMoment, Rot, Vector, WorldPose, max, min};
@@ -116,14 +115,14 @@ impl<'a> Seen<'a> {
         })
     }
 
-    /// The plane's height along its normal.
-    fn plane(&self) -> f32 {
-        self.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(self.normal)))
+    /// Height of the highest ground point along a direction.
+    fn top(&self, direction: Vector) -> f32 {
+        self.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(direction)))
     }
 
-    /// Height of the other manifold's highest ground point above this plane.
-    fn highest(&self, other: &Seen) -> f32 {
-        other.points().fold(f32::NEG_INFINITY, |top, [p, _]| max(top, p.dot(self.normal))) - self.plane()
+    /// The plane's height along its normal.
+    fn plane(&self) -> f32 {
+        self.top(self.normal)
     }
 
     /// Minimum height of a plane, with a normal of the group, for all points of this manifold to be flush
@@ -141,11 +140,11 @@ impl<'a> Seen<'a> {
     /// a seam, with the points of both on each other's planes, only if the plane of `other` continues over
     /// both pieces.
     fn is_held_by(&self, other: &Seen, is_plane_of_both: impl FnOnce() -> bool) -> bool {
-        let highest = other.highest(self);
+        let highest = self.top(other.normal) - other.plane();
         if !(highest <= self.flush) {
             return false;
         }
-        let of_other = self.highest(other);
+        let of_other = other.top(self.normal) - self.plane();
         if !(highest < of_other || of_other >= -self.flush && is_plane_of_both()) {
             return false;
         }
@@ -354,7 +353,7 @@ impl ContactTable {
                 index,
                 order: all.len() as u32,
                 side,
-                normal: if side == 0 { -m.normal } else { m.normal },
+                normal: impulse_transfer::toward(side, m),
                 is_round,
                 is_face: m.count > 2,
                 line,

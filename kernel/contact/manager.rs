@@ -109,10 +109,7 @@ impl ContactManager<'_> {
 
     /// Removes a contact. Wakes its bodies if it was solved.
     pub fn destroy(&mut self, id: u32) {
-        let contact = self.contacts.get(id);
-        if contact.is_solved() {
-            self.wake_bodies(contact.bodies);
-        }
+        self.wake_if_solved(ConstraintId::contact(id));
         self.detach(ConstraintId::contact(id));
         self.contacts.remove(id, self.colliders);
     }
@@ -247,10 +244,7 @@ impl ContactManager<'_> {
             }
         }
         for constraint in self.constraints_of_body(body) {
-            let tie = self.tie(constraint);
-            if tie.is_solved {
-                self.wake_bodies(tie.bodies);
-            }
+            self.wake_if_solved(constraint);
         }
     }
 
@@ -317,9 +311,8 @@ impl ContactManager<'_> {
         }
         self.bodies.set_awake(body, awake);
         for constraint in self.constraints_of_body(body) {
-            let tie = self.tie(constraint);
-            if awake && tie.is_solved {
-                self.wake_bodies(tie.bodies);
+            if awake {
+                self.wake_if_solved(constraint);
             }
             self.refresh(constraint);
         }

@@ -1,14 +1,63 @@
-//! Updates the manifolds of one contact: computes them in A's frame, and replaces the old manifolds in world
-//! axes.
+//! Computes the manifolds of one contact in A's frame, replaces its old manifolds in world axes, and holds
+//! the buffers and results of the worker that does so.
 
-use super::buffers::WorkerBuffers;
 use super::input::Sides;
-use super::record::{Contact, ContactFlags, Manifold, ManifoldPoint};
+use super::record::{Contact, ContactFlags, LostImpulse, Manifold, ManifoldPoint, Parallel, Sliding};
+use super::recycle::RecycleBatch;
 use super::time_of_impact::Meeting;
-use crate::manifold::{self, FeatureCache, LocalManifold, ManifoldQuery};
+use crate::manifold::{self, CompositeBuffers, FeatureCache, LocalManifold, ManifoldQuery};
 use crate::math::{Pose, Rot, Vector, min};
 use crate::shape::{Ball, Shape};
 use crate::tuning::contact::SAME_FACE;
+
+/// Buffers of one worker, kept between steps. Every contact writes them, so each worker has its own cache
+/// lines.
+#[derive(Clone, Debug, Default)]
+#[repr(align(128))]
+pub struct WorkerBuffers {
+    /// Manifolds of the current contact, in A's frame.
+    pub(super) local: Vec<LocalManifold>,
+    pub(super) composite: CompositeBuffers,
+    /// Contacts that may be recycled.
+    pub(super) batch: RecycleBatch,
+    /// Manifolds after the first of the last updated contact.
+    pub extra: Vec<Manifold>,
+    /// Contacts that began or ended to touch, or whose boxes came apart.
+    pub(super) changed: Vec<u32>,
+    /// Contacts whose manifolds after the first are to be stored, with their count.
+    pub(super) stored: Vec<(u32, usize)>,
+    /// The manifolds of `stored`, in the same order.
+    pub(super) pool: Vec<Manifold>,
+    /// Sliding colliders, one entry per contact with points, and whether this contact alone requires a
+    /// comparison.
+    pub(super) sliding: Vec<(u32, bool)>,
+    /// Manifolds of the current sliding collider.
+    pub(super) slides: Vec<Sliding>,
+    /// Groups of parallel manifolds in `slides`.
+    pub(super) parallel: Vec<Parallel>,
+    /// (contact, manifold) pairs whose [`is_internal`](Manifold::is_internal) changes.
+    pub(super) internal: Vec<(u32, u32)>,
+    /// (contact, manifold) pairs with their new normals, from the ground to the collider.
+    pub(super) turned: Vec<(u32, u32, Vector)>,
+    /// Loaded points that sliding colliders lost.
+    pub(super) lost: Vec<LostImpulse>,
+    /// Whether any contact overlaps deeply.
+    pub(super) any_deep: bool,
+}
+
+impl WorkerBuffers {
+    /// Clears the results of the last update.
+    pub(super) fn clear(&mut self) {
+        self.changed.clear();
+        self.stored.clear();
+        self.pool.clear();
+        self.sliding.clear();
+        self.internal.clear();
+        self.turned.clear();
+        self.lost.clear();
+        self.any_deep = false;
+    }
+}
 
 /// Computes the manifold of two native shapes at their present poses, with points up to `prediction` apart,
 /// margins not subtracted. Rim points are placed at the middle of the step; returns how far the surfaces may

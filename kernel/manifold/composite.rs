@@ -1,12 +1,12 @@
-//! Contact manifolds of composite shapes: part by part, merged into few. A closed convex surface collides as
-//! the solid that it bounds.
+//! Contact manifolds of composite shapes: part by part, then merged: parts with the same normal share a
+//! manifold. A closed convex surface collides as the solid that it bounds.
 
-use super::dim::{Convex, face_normal, with_convex};
-use super::merge::{Merging, merge};
+use super::dim::{Convex, face_normal, few_points, with_convex};
 use super::parts::{ClosedSurface, PartBuffers, PartQuery};
-use super::{FeatureCache, LocalManifold, ManifoldQuery};
-use crate::math::{Pose, min};
+use super::{FeatureCache, LocalManifold, LocalPoint, ManifoldQuery};
+use crate::math::{Pose, max, min};
 use crate::shape::{Aabb, Composite, Part, Shape};
+use crate::tuning::manifold::{ALIKE, SAME, SAME_NORMAL};
 use crate::tuning::sweeps::CORE_SHARE;
 use core::cell::Cell;
 
@@ -37,13 +37,12 @@ pub fn collide_composite(
     buffers: &mut CompositeBuffers,
     out: &mut Vec<LocalManifold>,
 ) -> f32 {
-    let cache = Cell::new(buffers.cache);
-    let gap = collide_parts([a, b], pose_b_in_a, query, false, &cache, &mut buffers.parts);
-    buffers.cache = cache.get();
+    let CompositeBuffers { cache, parts, merging } = buffers;
+    let gap = collide_parts([a, b], pose_b_in_a, query, false, Cell::from_mut(cache), parts);
     let start = out.len();
-    merge(&mut buffers.parts.found, &mut buffers.merging, out);
+    merge(&mut parts.found, merging, out);
     out[start..].iter_mut().for_each(|m| m.place_on_mover(query.ground));
-    if buffers.parts.found.is_empty() { gap } else { 0.0 }
+    if parts.found.is_empty() { gap } else { 0.0 }
 }
 
 /// Adds the manifolds of all parts in A's frame, each part on its own: of parts within the prediction, and of
@@ -185,4 +184,71 @@ fn collide_both(
         };
         min(gap, here)
     })
+}
+
+/// Buffers for [`merge`], kept between calls.
+#[derive(Clone, Debug, Default)]
+struct Merging {
+    /// For each manifold, the index of its merged manifold.
+    groups: Vec<usize>,
+    points: Vec<LocalPoint>,
+}
+
+/// Merges the manifolds in `found` with the same groups and about the same normal, the deepest first, and
+/// adds the results to `out`.
+fn merge(found: &mut [LocalManifold], room: &mut Merging, out: &mut Vec<LocalManifold>) {
+    let Merging { groups, points } = room;
+    if let [only] = found {
+        out.push(*only);
+        return;
+    }
+    found.sort_by(|a, b| a.lower_bound().total_cmp(&b.lower_bound()));
+    groups.clear();
+    let start = out.len();
+    for m in found.iter() {
+        let is_round_alike =
+            |o: &LocalManifold| o.radii.iter().zip(m.radii).all(|(r, q)| (r - q).abs() <= SAME * max(*r, q));
+        let is_flat = m.radii == [0.0; 2];
+        let is_parallel = |o: &LocalManifold| match is_flat {
+            true => o.radii == m.radii && o.normal.dot(m.normal) > SAME_NORMAL,
+            false => (o.normal - m.normal).length_squared() < ALIKE * ALIKE && is_round_alike(o),
+        };
+        let is_same = |o: &LocalManifold| o.groups == m.groups && is_parallel(o);
+        let group = out[start..].iter().position(is_same);
+        groups.push(group.unwrap_or(out.len() - start));
+        if group.is_none() {
+            out.push(*m);
+        }
+    }
+    for (group, merged) in out[start..].iter_mut().enumerate() {
+        if groups.iter().filter(|g| **g == group).count() == 1 {
+            continue;
+        }
+        points.clear();
+        for (m, _) in found.iter().zip(groups.iter()).filter(|(_, g)| **g == group) {
+            points.extend_from_slice(m.points());
+        }
+        drop_twins(points);
+        few_points(points, merged);
+    }
+}
+
+/// Merges points at the same place: the deeper point stays.
+fn drop_twins(points: &mut Vec<LocalPoint>) {
+    let first = points[0].point;
+    let spread = points.iter().fold(0.0, |far, p| max(far, (p.point - first).length_squared()));
+    let mut kept = 0;
+    for i in 0..points.len() {
+        let point = points[i];
+        let is_near = |p: &LocalPoint| (p.point - point.point).length_squared() <= SAME * SAME * spread;
+        match points[..kept].iter().position(is_near) {
+            Some(twin) if point.separation < points[twin].separation => points[twin] = point,
+            Some(_) => {}
+            None => {
+                points[kept] = point;
+                kept += 1;
+            }
+        }
+    }
+    points.truncate(kept);
 }

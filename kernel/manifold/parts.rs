@@ -24,7 +24,7 @@ const FEW_VERTICES: usize = 64;
 pub(super) struct PartBuffers {
     parts: Vec<u32>,
     pub(super) found: Vec<LocalManifold>,
-    /// For each manifold of `found`, the contact that it replaced, if it is uncertain.
+    /// For each manifold that the present query found, the contact that it replaced, if it is uncertain.
     replaced_contacts: Vec<Option<ReplacedContact>>,
     /// Near parts that the motion may lead past, with their present contacts.
     passing: Vec<(u32, LocalManifold, Option<ReplacedContact>)>,
@@ -49,8 +49,15 @@ struct ReplacedContact {
     nearest: f32,
     /// The share of the motion after which the facet meets the other shape.
     share: f32,
-    /// Whether the face contact is dropped.
-    is_redundant: bool,
+}
+
+impl ReplacedContact {
+    /// A contact of a normal and least separation, if the face contact that replaced it, with a normal and
+    /// least separation too, is uncertain.
+    fn new(normal: Vector, nearest: f32, by: (Vector, f32), prediction: f32) -> Option<Self> {
+        let is_uncertain = by.0.dot(normal) < TURNED || by.1 < nearest - SAME * prediction;
+        is_uncertain.then_some(Self { normal, nearest, share: 0.0 })
+    }
 }
 
 /// The closed surface that a facet is part of.
@@ -113,20 +120,18 @@ impl<'a> PartQuery<'a> {
         query: ManifoldQuery<'a>,
         alone: bool,
     ) -> Self {
-        let (other_group, name) = (0, 0);
-        let (on_composite, is_b, cache, closed_surface) = (false, false, None, None);
         Self {
             composite,
             other,
             pose,
             query,
-            other_group,
-            name,
+            other_group: 0,
+            name: 0,
             alone,
-            on_composite,
-            is_b,
-            cache,
-            closed_surface,
+            on_composite: false,
+            is_b: false,
+            cache: None,
+            closed_surface: None,
         }
     }
 
@@ -203,18 +208,15 @@ impl<'a> PartQuery<'a> {
     /// Drops uncertain contacts from `buffers.found[start..]` that other contacts make redundant.
     fn drop_redundant(&self, start: usize, buffers: &mut PartBuffers) {
         let PartBuffers { found, replaced_contacts, .. } = buffers;
-        for i in start..found.len() {
-            if let Some(replaced) = replaced_contacts[i] {
-                let is_redundant =
-                    self.is_redundant(&replaced, &found[i], &found[start..], &replaced_contacts[start..]);
-                replaced_contacts[i] = Some(ReplacedContact { is_redundant, ..replaced });
+        for (i, replaced) in (start..).zip(replaced_contacts.iter()) {
+            if let Some(replaced) = replaced
+                && self.is_redundant(replaced, &found[i], &found[start..], replaced_contacts)
+            {
+                found[i].count = 0;
             }
         }
-        let is_kept =
-            |replaced: &Option<ReplacedContact>| !replaced.is_some_and(|replaced| replaced.is_redundant);
-        let mut all = replaced_contacts.iter();
-        found.retain(|_| all.next().is_some_and(is_kept));
-        replaced_contacts.retain(is_kept);
+        found.retain(|m| m.count > 0);
+        replaced_contacts.clear();
     }
 
     /// Whether an uncertain contact is redundant, because a certain contact bears the same load. The side
@@ -289,9 +291,8 @@ impl<'a> PartQuery<'a> {
         replaced: Option<ReplacedContact>,
         buffers: &mut PartBuffers,
     ) {
-        let count = local.count;
         local.groups = [self.query.group(0, part), self.other_group];
-        local.points[..count].iter_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
+        local.points_mut().for_each(|p| p.feature = mix([self.name, part, p.feature]));
         buffers.found.push(local);
         buffers.replaced_contacts.push(replaced);
     }
@@ -324,13 +325,14 @@ impl<'a> PartQuery<'a> {
         if let Some(closed_surface) = self.closed_surface.filter(|_| local.count > 0) {
             let (normal, nearest) = (local.normal, local.lower_bound());
             self.keep_outside(&closed_surface, part, prediction, local);
-            let is_turned = local.normal.dot(normal) < TURNED;
-            if local.count > 0 && (is_turned || local.lower_bound() < nearest - SAME * prediction) {
-                return Some(ReplacedContact { normal, nearest, share: 0.0, is_redundant: false });
+            let by = (local.normal, local.lower_bound());
+            let replaced = ReplacedContact::new(normal, nearest, by, prediction);
+            if replaced.is_some() && local.count > 0 {
+                return replaced;
             }
         }
-        let surface = self.composite.surface().filter(|_| local.count > 0);
-        surface.and_then(|surface| self.keep_on_surface(surface, part, prediction, local))
+        let surface = self.composite.surface().filter(|_| local.count > 0)?;
+        self.keep_on_surface(surface, part, prediction, local)
     }
 
     /// Whether the motion may lead past a part that has points: it crosses their plane.
@@ -378,7 +380,7 @@ impl<'a> PartQuery<'a> {
                     collide_pair(solid, self.other.shape, input, local);
                 }
                 local.normal = at.rotation.rotate(local.normal);
-                local.points[..local.count].iter_mut().for_each(|p| p.point = at.transform(p.point));
+                local.points_mut().for_each(|p| p.point = at.transform(p.point));
             }
             (None, None) => local.count = 0,
         }
@@ -444,8 +446,7 @@ impl<'a> PartQuery<'a> {
             _ => self.on_composite,
         };
         let back = if on_composite { half } else { way - half };
-        let count = local.count;
-        for p in &mut local.points[..count] {
+        for p in local.points_mut() {
             p.point -= back;
             p.separation -= along;
             p.closing = -along;
@@ -537,8 +538,7 @@ impl<'a> PartQuery<'a> {
         let (found, nearest) = (local.normal, local.lower_bound());
         let own = self.toward_other(corners[0], face, found);
         self.collide_face(corners, own, prediction, local);
-        let is_uncertain = own.dot(found) < TURNED || local.lower_bound() < nearest - SAME * prediction;
-        is_uncertain.then_some(ReplacedContact { normal: found, nearest, share: 0.0, is_redundant: false })
+        ReplacedContact::new(found, nearest, (own, local.lower_bound()), prediction)
     }
 }
 

@@ -1,8 +1,6 @@
 //! The segments of a surface: their ends, and contacts with their side alone.
 
-use super::clip::{Facing, Side};
-use super::points::Limits;
-use super::polygonal::{Buffer, Edge, view};
+use super::polygonal::{Buffer, Edge, Facing, Limits, Side, view};
 use crate::manifold::border::{Border, is_beside};
 use crate::manifold::pairs::collide_pair;
 use crate::manifold::{LocalManifold, LocalPoint, PairInput};

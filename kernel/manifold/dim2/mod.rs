@@ -1,20 +1,18 @@
 //! Contacts of convex shapes in the plane: at most two points, midway between the surfaces.
 //!
+//! This file chooses the function of each pair, and has the function of half-spaces.
+//!
 //! Every bounded shape is treated as a polygon with a radius: a ball has one vertex, a capsule or segment
 //! two, other polygons three or more; ellipses are curves. The function of a pair depends only on the numbers
 //! of vertices, so seven kinds of shapes need five functions. (Capsules and rounded polygons as polygons with
 //! a radius, pairs of vertices as feature ids, and the early exit by a cached edge follow ideas of E. Catto's
 //! Box2D v3.)
 
-mod clip;
-mod cuboids;
 mod curved;
 mod facet;
-mod half_space;
-mod points;
 mod polygonal;
 mod polygons;
-mod segments;
+mod round;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -23,11 +21,11 @@ mod tests_curved;
 pub(super) mod tests_pairs;
 
 use super::{LocalManifold, PairInput};
-use crate::math::{Angular, Pose, Rot};
-use crate::shape::Shape;
-pub(super) use cuboids::collide as collide_cuboids;
+use crate::math::{Angular, Pose, Rot, Vector};
+use crate::shape::{HalfSpace, Shape};
 pub(super) use facet::{Convex, borders, face_normal, facing, few_points, with_convex};
 use polygonal::{Buffer, Polygonal};
+pub(super) use polygons::collide_cuboids;
 
 /// Does nothing, and returns infinity: shapes in the plane have no rims. `dim3` has the function for shapes
 /// in space.
@@ -58,7 +56,7 @@ pub(super) fn dispatch(a: &Shape, b: &Shape, input: PairInput, out: &mut LocalMa
         (HalfSpace(a), Curved(b)) => curved::half_space(a.normal, b, input, out),
         (HalfSpace(a), b) => {
             if let Some(b) = polygonal::view(b, &mut room_b) {
-                half_space::collide(a, &b, input, out);
+                half_space(a, &b, input, out);
             }
         }
         (
@@ -83,14 +81,41 @@ pub(super) fn dispatch(a: &Shape, b: &Shape, input: PairInput, out: &mut LocalMa
 
 fn collide_polygonal(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
     match (a.len(), b.len()) {
-        (1, 1) => points::collide_points(a, b, input, out),
-        (_, 1) => points::collide_with_point(a, b, input, out),
+        (1, 1) => round::collide_points(a, b, input, out),
+        (_, 1) => round::collide_with_point(a, b, input, out),
         (1, _) => {
             let inverse = input.pose.inverse();
-            points::collide_with_point(b, a, PairInput { pose: &inverse, ..input }, out);
+            round::collide_with_point(b, a, PairInput { pose: &inverse, ..input }, out);
             *out = out.flipped(&inverse);
         }
-        (2, 2) => segments::collide(a, b, input, out),
+        (2, 2) => round::collide_segments(a, b, input, out),
         _ => polygons::collide(a, b, input, out),
     }
+}
+
+/// A half-space against a bounded shape: the ends of the lowest edge. Fills `out` in the half-space's frame,
+/// with the normal out of it.
+fn half_space(plane: &HalfSpace, other: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, .. } = input;
+    let normal = plane.normal;
+    // The plane's normal and offset in the polygon's frame, so that only contact points are transformed.
+    let down = pose.rotation.inverse_rotate(normal);
+    let offset = pose.position.dot(normal);
+    let (lowest, height) = other.lowest(down);
+    out.normal = normal;
+    out.gap = height + offset - other.radius;
+    let mut push = |i: usize| {
+        let v: Vector = pose.transform(other.vertices[i]);
+        let h = other.vertices[i].dot(down) + offset;
+        let separation = h - other.radius;
+        if separation <= prediction {
+            out.push(v - normal * (0.5 * (h + other.radius)), separation, polygonal::pair(0, i));
+        }
+    };
+    if other.len() == 1 {
+        push(0);
+        return;
+    }
+    // In the order of the outline, so that points keep their order while the polygon rocks.
+    other.edge(other.edge_facing(down, lowest)).indices.into_iter().for_each(push);
 }

@@ -1,28 +1,28 @@
-//! Two convex polygons, at least one with an area, by the edge normal that separates them most.
+//! Two convex polygons, at least one with an area, by the edge normal that separates them most. Two cuboids,
+//! the most frequent pair, have a search of their own.
 //!
 //! Where the separation along a direction is positive, it grows towards the best direction and falls behind
 //! it. So the best edge of separated polygons is beside the nearest corner, and this edge and the edge facing
 //! it have the closest features.
 
 use super::super::{FeatureCache, LocalManifold, PairInput};
-use super::clip::{Facing, Side};
-use super::points::Limits;
-use super::polygonal::Polygonal;
+use super::polygonal::{Edge, Facing, Limits, NORMALS, Polygonal, Side, corners};
 use crate::math::{Pose, Vector, min};
+use crate::shape::Cuboid;
 
 /// An edge with the vertex of the other polygon that is lowest over it.
 #[derive(Clone, Copy)]
-pub(super) struct Best {
-    pub(super) edge: usize,
-    pub(super) support: usize,
-    pub(super) separation: f32,
+struct Best {
+    edge: usize,
+    support: usize,
+    separation: f32,
 }
 
 /// Another edge must be better than the reference by this to replace it, in metres: a thousandth of the
 /// prediction distance plus the rounding at the distance of the shapes' origins. It is far below the overlap
 /// of resting contacts and far above the noise of equal boxes on each other.
 #[inline]
-pub(super) fn preference(prediction: f32, pose: &Pose) -> f32 {
+fn preference(prediction: f32, pose: &Pose) -> f32 {
     1.0e-3 * prediction + 1.0e-6 * pose.position.abs().max_element()
 }
 
@@ -38,13 +38,11 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
         return;
     }
     let on_a = most_separating(a, b, &inverse, reach);
-    if on_a.separation > reach {
-        cache.set(cache_of(Side::A, on_a));
-        out.gap = on_a.separation - a.radius - b.radius;
-        return;
-    }
-    let on_b = most_separating(b, a, pose, reach);
-    let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
+    let (side, best) = if on_a.separation > reach {
+        (Side::A, on_a)
+    } else {
+        choose(on_a, most_separating(b, a, pose, reach), known, preference(prediction, pose))
+    };
     cache.set(cache_of(side, best));
     if best.separation > reach {
         out.gap = best.separation - a.radius - b.radius;
@@ -61,7 +59,7 @@ pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut 
 /// The reference edge: the better of two edges. While the polygons overlap or touch, it is the reference of
 /// the last step, or otherwise A's edge, unless another edge is better by `preference`.
 #[inline]
-pub(super) fn choose(on_a: Best, on_b: Best, known: Option<(Side, Best)>, preference: f32) -> (Side, Best) {
+fn choose(on_a: Best, on_b: Best, known: Option<(Side, Best)>, preference: f32) -> (Side, Best) {
     let best = if on_b.separation > on_a.separation { (Side::B, on_b) } else { (Side::A, on_a) };
     if best.1.separation > preference {
         return best;
@@ -151,7 +149,7 @@ fn cached(
 
 /// The side and edge in a cache.
 #[inline]
-pub(super) fn known_edge(cache: FeatureCache) -> Option<(Side, usize)> {
+fn known_edge(cache: FeatureCache) -> Option<(Side, usize)> {
     match cache.kind {
         EDGE_OF_A => Some((Side::A, usize::from(cache.a))),
         EDGE_OF_B => Some((Side::B, usize::from(cache.b))),
@@ -161,10 +159,78 @@ pub(super) fn known_edge(cache: FeatureCache) -> Option<(Side, usize)> {
 
 /// The cache of a reference edge; empty if its index does not fit.
 #[inline]
-pub(super) fn cache_of(side: Side, Best { edge, separation, .. }: Best) -> FeatureCache {
+fn cache_of(side: Side, Best { edge, separation, .. }: Best) -> FeatureCache {
     match (side, u8::try_from(edge)) {
         (Side::A, Ok(a)) => FeatureCache { kind: EDGE_OF_A, a, b: 0, separation },
         (Side::B, Ok(b)) => FeatureCache { kind: EDGE_OF_B, a: 0, b, separation },
         (_, Err(_)) => FeatureCache::NONE,
     }
+}
+
+/// Fills `out` for two cuboids. The signs of the offset give the edges to test: four separations are
+/// computed, where polygons need sixteen vertices. Edges and vertices are numbered as for polygons.
+pub(in crate::manifold) fn collide_cuboids(
+    a: &Cuboid,
+    b: &Cuboid,
+    input: PairInput,
+    out: &mut LocalManifold,
+) {
+    let PairInput { pose, prediction, cache } = input;
+    // In A's frame B's axes are the columns of R, in B's frame A's axes are its rows; |R| is symmetric
+    // but for signs: |R h| = (|c| hx + |s| hy, |s| hx + |c| hy) either way.
+    let (c, s) = (pose.rotation.cos.abs(), pose.rotation.sin.abs());
+    let reach = |h: Vector| Vector { x: c * h.x + s * h.y, y: s * h.x + c * h.y };
+    let (in_a, in_b) = (pose.position, pose.rotation.inverse_rotate(-pose.position));
+    let (over_a, over_b) = (in_a.abs() - a.half - reach(b.half), in_b.abs() - b.half - reach(a.half));
+
+    let (on_a, on_b) = (best_edge(in_a, over_a), best_edge(in_b, over_b));
+    let known = known_edge(cache.get()).and_then(|(side, edge)| {
+        let (offset, half, other) = if side == Side::A { (in_a, a, b) } else { (in_b, b, a) };
+        let normal = NORMALS.get(edge)?;
+        let extent = half.half + reach(other.half);
+        let separation = offset.dot(*normal) - extent.dot(normal.abs());
+        Some((side, Best { edge, support: 0, separation }))
+    });
+    let (side, best) = choose(on_a, on_b, known, preference(prediction, pose));
+    cache.set(cache_of(side, best));
+    if best.separation > prediction {
+        out.gap = best.separation;
+        return;
+    }
+
+    let (own, other) = if side == Side::A { (a, b) } else { (b, a) };
+    let reference = (edge(own, best.edge), NORMALS[best.edge]);
+    let limits = Limits { radii: [0.0; 2], prediction };
+    Facing::new(side, reference, |normal| facing_edge(other, normal), pose, limits)
+        .contact(best.separation > 0.0, out);
+}
+
+/// The edge of a cuboid that faces `offset` and has the larger of the separations `over` its faces.
+#[inline]
+fn best_edge(offset: Vector, over: Vector) -> Best {
+    if over.x > over.y {
+        Best { edge: if offset.x < 0.0 { 3 } else { 1 }, support: 0, separation: over.x }
+    } else {
+        Best { edge: if offset.y < 0.0 { 0 } else { 2 }, support: 0, separation: over.y }
+    }
+}
+
+/// The edge with the outward normal most opposite to `normal`.
+#[inline]
+fn facing_edge(cuboid: &Cuboid, normal: Vector) -> Edge {
+    let i = if normal.x.abs() > normal.y.abs() {
+        if normal.x < 0.0 { 1 } else { 3 }
+    } else if normal.y < 0.0 {
+        2
+    } else {
+        0
+    };
+    edge(cuboid, i)
+}
+
+/// The edge `i`, from corner `i` to the next.
+#[inline]
+fn edge(cuboid: &Cuboid, i: usize) -> Edge {
+    let (corners, j) = (corners(cuboid.half), (i + 1) & 3);
+    Edge { ends: [corners[i & 3], corners[j]], indices: [i, j] }
 }

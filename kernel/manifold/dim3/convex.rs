@@ -1,10 +1,9 @@
 //! Any two polyhedra, with radii: the points along their separating axis.
 
-use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Pair as _, Sizes};
+use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Known, Pair as _, Sizes};
 use super::clip::{self, FEW_CORNERS, MAX_CORNERS, Polygon, Reference, clip_line};
 use super::gjk;
-use super::sat::{self, Known};
-use super::view::{MatrixPose, View, extents};
+use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{Vector, clamp, max};
 use crate::shape::Edge;
@@ -40,14 +39,14 @@ impl axis::Pair for Pair<'_> {
         let (i, j) = (cache.a as usize, cache.b as usize);
         match cache.kind {
             FACE_A if i < self.a.faces.len() => {
-                Some(Axis::Face(sat::face_separation(self.a, i, self.b, &self.b_in_a)))
+                Some(Axis::Face(axis::face_separation(self.a, i, self.b, &self.b_in_a)))
             }
             FACE_B if j < self.b.faces.len() => {
-                let face = sat::face_separation(self.b, j, self.a, &self.a_in_b);
+                let face = axis::face_separation(self.b, j, self.a, &self.a_in_b);
                 Some(Axis::Face(FaceAxis { of_b: true, ..face }))
             }
             EDGES if i < self.a.edges.len() && j < self.b.edges.len() => {
-                sat::edge_separation(self.a, i, self.b, j, &self.b_in_a).map(Axis::Edges)
+                axis::edge_separation(self.a, i, self.b, j, &self.b_in_a).map(Axis::Edges)
             }
             _ => None,
         }
@@ -55,14 +54,14 @@ impl axis::Pair for Pair<'_> {
 
     fn best_face(&self, of_b: bool) -> FaceAxis {
         let (this, other, frame) = self.ordered(of_b);
-        FaceAxis { of_b, ..sat::best_face(this, other, frame, self.sizes.limit()) }
+        FaceAxis { of_b, ..axis::best_face(this, other, frame, self.sizes.limit()) }
     }
 
     fn best_edges(&self, of_a: &FaceAxis, of_b: &FaceAxis, separation: f32) -> Option<EdgeAxis> {
         let of_b_in_a = self.b_in_a.point(self.b.vertices[of_a.lowest]);
         let of_a_in_b = self.a_in_b.point(self.a.vertices[of_b.lowest]);
         let known = Known { of_b_in_a, of_a_in_b, separation };
-        sat::best_edges(self.a, self.b, &self.b_in_a, &known, self.sizes.limit())
+        axis::best_edges(self.a, self.b, &self.b_in_a, &known, self.sizes.limit())
     }
 
     fn build_face(&self, axis: &FaceAxis, out: &mut LocalManifold) -> bool {
@@ -108,8 +107,7 @@ impl axis::Pair for Pair<'_> {
 impl<'a> Pair<'a> {
     pub fn new(a: &'a View<'a>, b: &'a View<'a>, input: PairInput) -> Self {
         let b_in_a = MatrixPose::new(input.pose);
-        let (larger, smaller) = extents(a, b);
-        let sizes = Sizes { prediction: input.prediction, radius: a.radius + b.radius, smaller, larger };
+        let sizes = Sizes::new(input.prediction, a.radius + b.radius, [a.extent, b.extent]);
         Self { a, b, b_in_a, a_in_b: b_in_a.inverse(), sizes }
     }
 

@@ -4,8 +4,8 @@
 //! edges. The axis is selected as in [`axis`](super::axis).
 
 use super::axis::{self, Axis, EDGES, EdgeAxis, FACE_A, FACE_B, FaceAxis, Pair as _, Sizes};
+use super::clip::Patch;
 use super::convex;
-use super::reduce::Patch;
 use super::view::{MatrixPose, Small};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
 use crate::math::{F32x4, Lane, Num, Vector, clamp, max, min};
@@ -30,10 +30,8 @@ struct Pair<'a> {
 pub(in crate::manifold) fn collide(a: &Cuboid, b: &Cuboid, input: PairInput, out: &mut LocalManifold) {
     let (half_a, half_b) = (a.half, b.half);
     let frame = MatrixPose::new(input.pose);
-    let (size_a, size_b) = (half_a.max_element(), half_b.max_element());
-    let (larger, smaller) = (max(size_a, size_b), min(size_a, size_b));
     let offset = [frame.position, frame.direction_in(frame.position)];
-    let sizes = Sizes { prediction: input.prediction, radius: 0.0, smaller, larger };
+    let sizes = Sizes::new(input.prediction, 0.0, [half_a.max_element(), half_b.max_element()]);
     Pair { half_a, half_b, frame, offset, input, sizes }.collide(input.cache, out);
 }
 

@@ -1,8 +1,8 @@
 //! Manifolds against brute-force distances in `f64`, and the invariants of every pair.
 
+use super::axis;
+use super::clip::keep;
 use super::oracle::Solid;
-use super::reduce::keep;
-use super::sat;
 use super::view::{MatrixPose, View};
 use crate::manifold::{FeatureCache, LocalManifold, LocalPoint, collide};
 use crate::math::{Pose, Rot, Vector};
@@ -227,17 +227,17 @@ proptest! {
     fn what_is_ruled_out_beforehand_would_not_have_been_found(a in hull(), b in hull(), pose in pose(1.5)) {
         let (Shape::Hull(a), Shape::Hull(b)) = (&a, &b) else { unreachable!() };
         let (a, b, frame) = (View::from(&**a), View::from(&**b), MatrixPose::new(&pose));
-        let best = sat::best_face(&a, &b, &frame, f32::INFINITY);
-        let all = (0..a.faces.len()).map(|i| sat::face_separation(&a, i, &b, &frame).separation);
+        let best = axis::best_face(&a, &b, &frame, f32::INFINITY);
+        let all = (0..a.faces.len()).map(|i| axis::face_separation(&a, i, &b, &frame).separation);
         prop_assert!((best.separation - all.fold(f32::NEG_INFINITY, f32::max)).abs() < 1e-5);
         let inverse = frame.inverse();
-        let of_b = sat::best_face(&b, &a, &inverse, f32::INFINITY);
-        let known = |separation: f32| sat::Known {
+        let of_b = axis::best_face(&b, &a, &inverse, f32::INFINITY);
+        let known = |separation: f32| axis::Known {
             of_b_in_a: frame.point(b.vertices[best.lowest]),
             of_a_in_b: inverse.point(a.vertices[of_b.lowest]),
             separation,
         };
-        let edges = |separation| sat::best_edges(&a, &b, &frame, &known(separation), f32::INFINITY);
+        let edges = |separation| axis::best_edges(&a, &b, &frame, &known(separation), f32::INFINITY);
         let bar = best.separation.max(of_b.separation) + 1e-4;
         // No separation is below minus infinity, so no pair is ruled out.
         match (edges(bar), edges(f32::NEG_INFINITY)) {

@@ -1,8 +1,8 @@
 //! A view of every polyhedral core: hulls by reference; boxes, triangles, segments and points as scaled
 //! copies on the stack. The same code collides all of them.
 
-use crate::math::{F32x4, Lane, Num, Pose, Vector, max, min};
-use crate::shape::{Capsule, Edge, EdgeBlock, Face, FaceBlock, Hull, Shape, farthest};
+use crate::math::{F32x4, Lane, Num, Pose, Vector, max};
+use crate::shape::{Edge, EdgeBlock, Face, FaceBlock, Hull, Shape, farthest};
 
 /// The convex polyhedron, possibly flat, that a shape is without its radius.
 #[derive(Clone, Copy)]
@@ -14,10 +14,9 @@ pub(super) struct View<'a> {
     pub edges: &'a [Edge],
     pub edge_blocks: &'a [EdgeBlock],
     pub face_blocks: &'a [FaceBlock],
-    /// The faces around each vertex, one vertex after another.
-    pub fans: &'a [u32],
-    /// The index of each vertex' first face in that list, and the length of the list.
-    pub fan_starts: &'a [u32],
+    /// The faces around each vertex, one vertex after another. Then the index of each vertex' first face in
+    /// this list, and the length of the list.
+    pub fans: (&'a [u32], &'a [u32]),
     /// A point inside.
     pub center: Vector,
     /// The approximate distance from the centre to the farthest vertex.
@@ -43,7 +42,8 @@ impl View<'_> {
     /// The faces around a vertex.
     #[inline]
     pub fn fan(&self, vertex: usize) -> &[u32] {
-        &self.fans[self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize]
+        let (faces, starts) = self.fans;
+        &faces[starts[vertex] as usize..starts[vertex + 1] as usize]
     }
 
     /// The number of vertices of a face, or of all if there is none.
@@ -70,8 +70,7 @@ impl<'a> From<&'a Hull> for View<'a> {
             edges: hull.edges(),
             edge_blocks: hull.edge_blocks(),
             face_blocks: hull.face_blocks(),
-            fans: hull.fans().0,
-            fan_starts: hull.fans().1,
+            fans: hull.fans(),
             center: hull.centroid(),
             extent: hull.reach() + hull.radius(),
             radius: hull.radius(),
@@ -160,8 +159,7 @@ pub(super) struct Small {
     faces: [Face; 6],
     edge_blocks: [EdgeBlock; 3],
     face_blocks: [FaceBlock; 2],
-    fans: &'static [u32],
-    fan_starts: &'static [u32],
+    fans: (&'static [u32], &'static [u32]),
     loops: &'static [u32],
     edges: &'static [Edge],
     vertex_count: usize,
@@ -188,8 +186,7 @@ impl Small {
             faces: [NO_FACE; 6],
             edge_blocks: [EMPTY_EDGES; 3],
             face_blocks: [FaceBlock { normal: Vector::ZERO, offset: F32x4::ZERO }; 2],
-            fans: &[],
-            fan_starts: &[],
+            fans: (&[], &[]),
             loops: &[],
             edges: &[],
             vertex_count: 1,
@@ -225,8 +222,7 @@ impl Small {
                 FaceBlock { normal: CUBE_NORMALS[0], offset: F32x4::new([h[0], h[0], h[1], h[1]]) },
                 FaceBlock { normal: CUBE_NORMALS[1], offset: wide.z },
             ],
-            fans: &CUBE_FANS,
-            fan_starts: &CUBE_FAN_STARTS,
+            fans: (&CUBE_FANS, &CUBE_FAN_STARTS),
             loops: &CUBE_LOOPS,
             edges: &CUBE_EDGES,
             vertex_count: 8,
@@ -261,7 +257,7 @@ impl Small {
         small.faces[1] = Face { normal: -normal, offset: -offset, first: 3, count: 3 };
         small.face_count = 2;
         (small.loops, small.edges) = (&TRIANGLE_LOOPS, &TRIANGLE_EDGES);
-        (small.fans, small.fan_starts) = (&TRIANGLE_FANS, &TRIANGLE_FAN_STARTS);
+        small.fans = (&TRIANGLE_FANS, &TRIANGLE_FAN_STARTS);
         let mut both = Vector::<F32x4>::splat(-normal);
         both.set(0, normal);
         small.face_blocks[0] =
@@ -299,11 +295,6 @@ impl Small {
         small
     }
 
-    /// The core of a capsule.
-    pub fn capsule(capsule: &Capsule) -> Self {
-        Self::segment(capsule.a, capsule.b, capsule.radius)
-    }
-
     /// Packs the vertices of a polyhedron with up to four. Vertices after the last repeat it.
     #[inline(always)]
     fn fill_block(&mut self) {
@@ -330,7 +321,6 @@ impl Small {
             edge_blocks: &self.edge_blocks[..self.edges.len().div_ceil(4)],
             face_blocks: &self.face_blocks[..self.face_count.div_ceil(4)],
             fans: self.fans,
-            fan_starts: self.fan_starts,
             center: self.center,
             extent: self.extent,
             radius: self.radius,
@@ -345,7 +335,7 @@ pub(super) fn with_view<R>(shape: &Shape, f: impl FnOnce(Option<&View>) -> R) ->
         Shape::Hull(hull) => return f(Some(&View::from(&**hull))),
         Shape::Cuboid(s) => Small::cuboid(s.half),
         Shape::Triangle(s) => Small::triangle([s.a, s.b, s.c]),
-        Shape::Capsule(s) => Small::capsule(s),
+        Shape::Capsule(s) => Small::segment(s.a, s.b, s.radius),
         Shape::Segment(s) => Small::segment(s.a, s.b, 0.0),
         Shape::Ball(s) => Small::point(Vector::ZERO, s.radius),
         Shape::Composite(_) | Shape::Curved(_) | Shape::HalfSpace(_) | Shape::Foreign(_) => return f(None),
@@ -420,9 +410,4 @@ impl MatrixPose {
         let [x, y, z] = self.axes.map(|axis| Vector::<N>::splat(axis).dot(v));
         Vector { x, y, z }
     }
-}
-
-/// The larger of two extents, and the smaller.
-pub(super) fn extents(a: &View, b: &View) -> (f32, f32) {
-    (max(a.extent, b.extent), min(a.extent, b.extent))
 }

@@ -6,19 +6,19 @@
 //! apart along the best axis so far, and this is repeated until the axis stays; with little overlap this
 //! takes two or three rounds.
 
-mod deep;
 mod patch;
 mod rim;
 mod shape_features;
 #[cfg(test)]
 mod tests;
 
+use super::axis::Sizes;
+use super::clip::keep;
 use super::gjk;
-use super::reduce::keep;
 use super::round::unit_or;
 use super::view::{MatrixPose, View, with_view};
 use crate::manifold::{FeatureCache, LocalManifold, PairInput};
-use crate::math::{Vector, max, min};
+use crate::math::{Vector, max};
 use crate::shape::{Ball, Curved, Shape};
 use crate::tuning::contact::DEEP;
 use crate::tuning::manifold::{FACING, KEPT, MARGIN, ROUNDING};
@@ -49,12 +49,15 @@ enum Axis {
     Line,
 }
 
-/// An axis, the unit normal from A to B along it, and the distance between the cores.
+/// An axis and the distance between the cores along it.
 #[derive(Clone, Copy)]
 struct Found {
     axis: Axis,
+    /// The unit normal from A to B.
     normal: Vector,
     separation: f32,
+    /// The nearest points of the cores, if they are known.
+    nearest: Option<[Vector; 2]>,
 }
 
 /// Two shapes and their relative pose.
@@ -63,9 +66,7 @@ struct Pair<'a, A> {
     b: &'a Curved,
     b_in_a: MatrixPose,
     cache: &'a Cell<FeatureCache>,
-    prediction: f32,
-    smaller: f32,
-    larger: f32,
+    sizes: Sizes,
 }
 
 /// The contact of a shape with a polyhedral core and a frustum. Not inlined, since its stack frame is large.
@@ -95,13 +96,13 @@ pub(super) fn collide_face(a: &View, normal: Vector, b: &Curved, input: PairInpu
     let b = &b.with_equal_discs();
     let pair = Pair::new(a, b, input);
     let found = pair.plane_a(face);
-    if found.separation > pair.limit() {
+    if found.separation > pair.sizes.limit() {
         out.gap = found.separation - a.radius;
         return;
     }
     pair.build_plane(&found, &mut 0, out);
     // A shape deep under a face need not be over it.
-    if out.count == 0 && found.separation < -DEEP * pair.smaller {
+    if out.count == 0 && found.separation < -DEEP * pair.sizes.smaller {
         pair.search(out);
     }
 }
@@ -118,7 +119,7 @@ pub(super) fn half_space(normal: Vector, b: &Curved, input: PairInput, out: &mut
     let known = input.cache.get();
     let phase = if known.kind == PLANE_A { known.b } else { 0 };
     let mut region = Region::new(normal, 0.0, input.prediction, b.extent(Vector::ZERO), phase);
-    region.fill_plane(&shape_features::facing(b, down, &frame));
+    region.fill_plane(&b.facing(down).moved(&frame));
     input.cache.set(FeatureCache { kind: PLANE_A, a: 0, b: region.phase, separation: out.gap });
     take(&region, out);
     out.radii = [0.0, b.rolling(down)];
@@ -148,15 +149,9 @@ fn take(region: &Region, out: &mut LocalManifold) {
 
 impl<'a, A: ShapeFeatures> Pair<'a, A> {
     fn new(a: &'a A, b: &'a Curved, input: PairInput<'a>) -> Self {
-        let extents = [a.extent(), b.extent(Vector::ZERO)];
-        let (smaller, larger) = (min(extents[0], extents[1]), max(extents[0], extents[1]));
         let PairInput { pose, prediction, cache } = input;
-        Self { a, b, b_in_a: MatrixPose::new(pose), cache, prediction, smaller, larger }
-    }
-
-    /// Cores farther apart than this have no contact.
-    fn limit(&self) -> f32 {
-        self.prediction + self.a.radius()
+        let sizes = Sizes::new(prediction, a.radius(), [a.extent(), b.extent(Vector::ZERO)]);
+        Self { a, b, b_in_a: MatrixPose::new(pose), cache, sizes }
     }
 
     /// The distance between the cores along a unit normal.
@@ -169,14 +164,18 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         let (normal, offset) = self.a.plane(plane);
         let b = self.b.support(-self.b_in_a.direction_in(normal));
         let separation = normal.dot(self.b_in_a.point(b)) - offset;
-        Found { axis: Axis::PlaneA(plane), normal, separation }
+        Found { axis: Axis::PlaneA(plane), normal, separation, nearest: None }
     }
 
     fn plane_b(&self, end: usize) -> Found {
         let outward = self.b_in_a.axes[1] * if end == 0 { -1.0 } else { 1.0 };
         let a = self.a.farthest_point(-outward).0;
         let separation = outward.dot(a - self.b_in_a.position) - self.b.half_height;
-        Found { axis: Axis::PlaneB(end), normal: -outward, separation }
+        Found { axis: Axis::PlaneB(end), normal: -outward, separation, nearest: None }
+    }
+
+    fn line(&self, normal: Vector, nearest: Option<[Vector; 2]>) -> Found {
+        Found { axis: Axis::Line, normal, separation: self.separation(normal), nearest }
     }
 
     /// Whether the cached axis decides the contact.
@@ -186,18 +185,15 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         let found = match cache.kind {
             PLANE_A if index < self.a.planes() => self.plane_a(index),
             PLANE_B if index < 2 => self.plane_b(index),
-            LINE => {
-                let normal = normal_of(cache);
-                Found { axis: Axis::Line, normal, separation: self.separation(normal) }
-            }
+            LINE => self.line(normal_of(cache), None),
             _ => return false,
         };
-        if found.separation > self.limit() {
-            out.gap = found.separation - self.a.radius();
+        if found.separation > self.sizes.limit() {
+            out.gap = found.separation - self.sizes.radius;
             return true;
         }
         if matches!(found.axis, Axis::Line)
-            || !((found.separation - cache.separation).abs() < KEPT * self.smaller)
+            || !((found.separation - cache.separation).abs() < KEPT * self.sizes.smaller)
         {
             return false;
         }
@@ -213,7 +209,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
     fn search(&self, out: &mut LocalManifold) {
         let known = self.cache.get();
         let phase = if known.kind == PLANE_A || known.kind == PLANE_B { known.b } else { 0 };
-        let preference = 2.0 * MARGIN * self.smaller;
+        let preference = 2.0 * MARGIN * self.sizes.smaller;
         let mut best = self.plane_b(0);
         let mut consider = |found: Found, bonus: f32| {
             if found.separation + bonus > best.separation {
@@ -222,28 +218,26 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         };
         consider(self.plane_b(1), 0.0);
         (0..self.a.planes()).for_each(|plane| consider(self.plane_a(plane), 0.1 * preference));
-        if best.separation > self.limit() {
+        if best.separation > self.sizes.limit() {
             self.remember(&best, phase);
-            out.gap = best.separation - self.a.radius();
+            out.gap = best.separation - self.sizes.radius;
             return;
         }
         let plane = best;
-        let mut lines = [None; 2];
-        lines[0] = self.across_axes();
-        lines[1] = (known.kind == LINE).then(|| normal_of(known));
         let mut start = plane;
+        let lines = [self.across_axes(), (known.kind == LINE).then(|| normal_of(known))];
         for (i, normal) in lines.into_iter().enumerate() {
             let Some(normal) = normal else { continue };
-            let line = Found { axis: Axis::Line, normal, separation: self.separation(normal) };
+            let line = self.line(normal, None);
             if line.separation <= max(start.separation, plane.separation + preference) {
                 continue;
             }
             start = line;
-            if line.separation > self.limit() {
-                return self.finish_line(&line, None, out);
+            if line.separation > self.sizes.limit() {
+                return self.finish_line(&line, out);
             }
             // The cached axis is rounded.
-            if i == 0 && self.build_line(&line, None, out) && self.is_best(&line, self.middle(out)) {
+            if i == 0 && self.build_line(&line, out) && self.is_best(&line, self.middle(out)) {
                 self.remember(&line, 0);
                 return;
             }
@@ -255,36 +249,34 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
             return self.remember(&plane, turned);
         }
         let refined = self.refine_all(&start);
-        let resolution = gjk::resolution(self.larger, self.smaller);
-        let is_better = refined.0.separation > plane.separation + preference;
-        if out.count > 0 && plane.separation <= resolution && !is_better {
+        let is_better = refined.separation > plane.separation + preference;
+        if out.count > 0 && plane.separation <= self.sizes.resolution() && !is_better {
             if !is_exact {
-                self.add_deepest(&refined.0, refined.1, out);
+                refined.nearest.iter().for_each(|ends| self.push_single(&refined, *ends, out));
             }
             return self.remember(&plane, turned);
         }
-        self.finish_line(&refined.0, refined.1, out);
+        self.finish_line(&refined, out);
     }
 
-    /// Adds the nearest points to the region of a plane that lacks them.
-    fn add_deepest(&self, line: &Found, witness: Option<[Vector; 2]>, out: &mut LocalManifold) {
-        let separation = line.separation - self.a.radius();
-        let Some([a, b]) = witness else { return };
-        if separation <= self.prediction {
+    /// Adds the point between two points of the cores, in place of the last point of a full manifold.
+    fn push_single(&self, line: &Found, [a, b]: [Vector; 2], out: &mut LocalManifold) {
+        let separation = line.separation - self.sizes.radius;
+        if separation <= self.sizes.prediction {
             out.count = out.count.min(out.points.len() - 1);
-            out.push((a + b + out.normal * self.a.radius()) * 0.5, separation, SINGLE);
+            out.push((a + b + out.normal * self.sizes.radius) * 0.5, separation, SINGLE);
         }
     }
 
     /// Fills the manifold along an axis that is no plane.
-    fn finish_line(&self, line: &Found, witness: Option<[Vector; 2]>, out: &mut LocalManifold) {
+    fn finish_line(&self, line: &Found, out: &mut LocalManifold) {
         self.remember(line, 0);
         out.count = 0;
-        if !(line.separation <= self.limit()) {
-            out.gap = max(line.separation - self.a.radius(), 0.0);
+        if !(line.separation <= self.sizes.limit()) {
+            out.gap = max(line.separation - self.sizes.radius, 0.0);
             return;
         }
-        self.build_line(line, witness, out);
+        self.build_line(line, out);
     }
 
     /// The cache for the next step.
@@ -310,22 +302,23 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         match found.axis {
             Axis::PlaneA(plane) => {
                 let down = -self.b_in_a.direction_in(n);
-                region.fill(&self.a.part(plane), &shape_features::facing(self.b, down, &self.b_in_a));
+                region.fill(&self.a.part(plane), &self.b.facing(down).moved(&self.b_in_a));
             }
             Axis::PlaneB(end) => {
-                region.fill(&self.a.facing(n), &shape_features::end(self.b, end, &self.b_in_a));
+                region.fill(&self.a.facing(n), &self.b.part(end).moved(&self.b_in_a));
             }
             Axis::Line => return false,
         }
         *phase = region.phase;
         take(&region, out);
         self.set_radii(out);
-        region.least <= found.separation + MARGIN * self.smaller
+        region.least <= found.separation + MARGIN * self.sizes.smaller
     }
 
     fn region(&self, found: &Found, phase: Phase) -> Region {
-        let mut region = Region::new(found.normal, self.a.radius(), self.prediction, self.smaller, phase);
-        region.deepest = found.separation - MARGIN * self.smaller;
+        let mut region =
+            Region::new(found.normal, self.sizes.radius, self.sizes.prediction, self.sizes.smaller, phase);
+        region.deepest = found.separation - MARGIN * self.sizes.smaller;
         region
     }
 
@@ -336,14 +329,13 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
     }
 
     /// Fills the manifold from an axis that is no plane: the points of two lines side by side, or one point.
-    /// `witness` are the nearest points, if they are known. Returns whether the points are as near as the
-    /// separation along the axis.
-    fn build_line(&self, found: &Found, witness: Option<[Vector; 2]>, out: &mut LocalManifold) -> bool {
+    /// Returns whether the points are as near as the separation along the axis.
+    fn build_line(&self, found: &Found, out: &mut LocalManifold) -> bool {
         let n = found.normal;
         let mut region = self.region(found, 0);
         let down = -self.b_in_a.direction_in(n);
         let line_b = self.b.line_along(down).map(|ends| ends.map(|p| self.b_in_a.point(p)));
-        let bar = found.separation + MARGIN * self.smaller;
+        let bar = found.separation + MARGIN * self.sizes.smaller;
         if let (Some(a), Some(b)) = (self.a.line_along(n), line_b)
             && region.parallel_lines(&a, &b)
             && region.least <= bar
@@ -352,24 +344,20 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
             self.set_radii(out);
             return true;
         }
-        let (ends, is_exact) = match (witness, self.a.line_along(n), line_b) {
-            (Some(witness), ..) => (witness, true),
+        let (ends, is_exact) = match (found.nearest, self.a.line_along(n), line_b) {
+            (Some(nearest), ..) => (nearest, true),
             (None, Some(a), Some(b)) => {
                 let (p, q, inside) = super::convex::closest_of_lines(a, b);
                 let aside = (q - p - n * found.separation).length();
-                ([p, q], inside && aside <= MARGIN * self.smaller)
+                ([p, q], inside && aside <= MARGIN * self.sizes.smaller)
             }
             _ => {
                 let (a, b) = (self.a.farthest_point(n).0, self.b_in_a.point(self.b.support(down)));
-                ([a, b], (b - a - n * found.separation).length() <= MARGIN * self.smaller)
+                ([a, b], (b - a - n * found.separation).length() <= MARGIN * self.sizes.smaller)
             }
         };
         (out.normal, out.count) = (n, 0);
-        let separation = found.separation - self.a.radius();
-        if separation <= self.prediction {
-            let point = (ends[0] + ends[1] + n * self.a.radius()) * 0.5;
-            out.push(point, separation, SINGLE);
-        }
+        self.push_single(found, ends, out);
         self.set_radii(out);
         is_exact
     }
@@ -392,7 +380,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
             let along = if uu > vv { u * (1.0 / uu) } else { v * (1.0 / max(vv, f32::MIN_POSITIVE)) };
             let along = along * max(uu, vv);
             let off = between - along * (along.dot(between) / max(along.length_squared(), f32::MIN_POSITIVE));
-            if !(off.length_squared() > 1.0e-6 * self.smaller * self.smaller) {
+            if !(off.length_squared() > 1.0e-6 * self.sizes.smaller * self.sizes.smaller) {
                 return None;
             }
             unit_or(off, Vector::Y)
@@ -405,7 +393,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         if out.count == 0 {
             return None;
         }
-        let to_a = |separation: f32| out.normal * (0.5 * separation + self.a.radius());
+        let to_a = |separation: f32| out.normal * (0.5 * separation + self.sizes.radius);
         let ends = out.points().iter().fold([Vector::ZERO; 2], |[a, b], p| {
             [a + p.point - to_a(p.separation), b + p.point + out.normal * (0.5 * p.separation)]
         });
@@ -415,7 +403,7 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
     /// Whether no axis is clearly less deep, tested with a point of each core. If a ball about a point of B
     /// lies within A, all axes are at least as deep as its radius; the same holds for a point of A within B.
     fn is_best(&self, found: &Found, points: Option<[Vector; 2]>) -> bool {
-        let sure = found.separation + KEPT * self.smaller;
+        let sure = found.separation + KEPT * self.sizes.smaller;
         sure >= 0.0
             || points.is_some_and(|[on_a, on_b]| {
                 let on_a = self.b_in_a.direction_in(on_a - self.b_in_a.position);
@@ -437,30 +425,27 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
         self.a.depth_of(self.b_in_a.point(of_b)) > 0.0 || is_in_b()
     }
 
-    /// The axis that separates the cores best, and the nearest points. Where cores overlap, several axes may
-    /// be local optima.
-    fn refine_all(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
+    /// The axis that separates the cores best. Where cores overlap, several axes may be local optima.
+    fn refine_all(&self, start: &Found) -> Found {
         let near = self.refine(start);
-        if self.is_best(&near.0, near.1) {
+        if self.is_best(&near, near.nearest) {
             return near;
         }
-        let Some(normal) = deep::shallowest(self.a, self.b, &self.b_in_a) else { return near };
-        let axis = Found { axis: Axis::Line, normal, separation: self.separation(normal) };
-        let all = self.refine(&axis);
-        if all.0.separation > near.0.separation { all } else { near }
+        let Some(normal) = gjk::shallowest(self.a, self.b, &self.b_in_a) else { return near };
+        let all = self.refine(&self.line(normal, None));
+        if all.separation > near.separation { all } else { near }
     }
 
-    /// The axis near a given axis that separates the cores best, and the nearest points.
-    fn refine(&self, start: &Found) -> (Found, Option<[Vector; 2]>) {
-        let apart = DEEP * self.smaller;
+    /// The axis near a given axis that separates the cores best.
+    fn refine(&self, start: &Found) -> Found {
+        let apart = DEEP * self.sizes.smaller;
         if !self.surely_overlaps(start)
             && let Some(c) = gjk::closest_within(self.a, self.b, &self.b_in_a, start.normal, f32::INFINITY)
-            && c.distance > gjk::resolution(self.larger, self.smaller)
+            && c.distance > self.sizes.resolution()
         {
-            let found = Found { axis: Axis::Line, normal: c.normal, separation: self.separation(c.normal) };
-            return (found, Some([c.a, c.b]));
+            return self.line(c.normal, Some([c.a, c.b]));
         }
-        let mut best = (Found { axis: Axis::Line, ..*start }, None);
+        let mut best = Found { axis: Axis::Line, ..*start };
         let mut normal = start.normal;
         let mut separation = start.separation;
         for _ in 0..ROUNDS {
@@ -470,22 +455,21 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
             let Some(closest) = gjk::closest_within(self.a, self.b, &frame, normal, f32::INFINITY) else {
                 break;
             };
-            let found = self.separation(closest.normal);
-            let gain = found - best.0.separation;
+            let found = self.line(closest.normal, Some([closest.a, closest.b - normal * push]));
+            let gain = found.separation - best.separation;
             // Moved along another direction, the nearest points are not opposite each other.
             let aside = (closest.normal - normal).length() * push;
-            let points = Some([closest.a, closest.b - normal * push]);
-            if gain >= -ROUNDING * self.smaller {
-                best = (Found { axis: Axis::Line, normal: closest.normal, separation: found }, points);
-            } else if best.1.is_none() {
-                best.1 = points;
+            if gain >= -ROUNDING * self.sizes.smaller {
+                best = found;
+            } else if best.nearest.is_none() {
+                best.nearest = found.nearest;
             }
-            if !(gain > ROUNDING * self.smaller
-                || gain >= -ROUNDING * self.smaller && aside > MARGIN * self.smaller)
+            if !(gain > ROUNDING * self.sizes.smaller
+                || gain >= -ROUNDING * self.sizes.smaller && aside > MARGIN * self.sizes.smaller)
             {
                 break;
             }
-            (normal, separation) = (closest.normal, found);
+            (normal, separation) = (found.normal, found.separation);
         }
         best
     }

@@ -5,9 +5,9 @@
 //! full circle stands on four points that keep their positions in the other shape's frame, so that no point
 //! moves while a cylinder turns.
 
-use super::super::clip::clip_line;
-use super::super::reduce::{Candidates, MAX_CANDIDATES};
+use super::super::clip::{Candidates, MAX_CANDIDATES, clip_line};
 use super::super::round::Lines;
+use super::super::view::MatrixPose;
 use crate::manifold::LocalPoint;
 use crate::math::{Vector, atan2, min, sin_cos};
 use crate::tuning::manifold::{ALIKE, CROSSED, MARGIN, SIDEWAYS};
@@ -21,6 +21,22 @@ pub(super) enum Patch<'a> {
     Face(Face<'a>),
     /// A line, or a point with both ends in one place.
     Line([Vector; 2]),
+}
+
+impl Patch<'_> {
+    /// A part of a frustum in the outer frame. Polygons stay: only A has them.
+    pub fn moved(self, frame: &MatrixPose) -> Self {
+        match self {
+            Patch::Disc(disc) => Patch::Disc(Disc {
+                center: frame.point(disc.center),
+                normal: frame.direction(disc.normal),
+                radius: disc.radius,
+                hint: frame.direction(disc.hint),
+            }),
+            Patch::Line(ends) => Patch::Line(ends.map(|p| frame.point(p))),
+            Patch::Face(_) => self,
+        }
+    }
 }
 
 /// A circle with its interior.
@@ -120,8 +136,7 @@ impl Region {
         let normal = self.normal;
         match b {
             Patch::Disc(disc) => {
-                let disc = Disc { hint: normal.any_orthonormal(), ..*disc };
-                for (i, point) in self.quarters(&disc, &disc, normal, false) {
+                for (i, point) in self.quarters(disc, normal.any_orthonormal(), normal, false) {
                     let gap = normal.dot(point);
                     self.push(point - normal * gap, gap, OF_B | i);
                 }
@@ -137,9 +152,10 @@ impl Region {
     }
 
     /// The four points of a circle over a plane with a normal across it, with their numbers. One of them is
-    /// at or close to the point nearest to the plane. `of_a` tells that the circle is A's.
-    fn quarters(&mut self, disc: &Disc, hint: &Disc, plane: Vector, of_a: bool) -> [(u32, Vector); 4] {
-        let (u, v) = disc.frame(hint.hint);
+    /// at or close to the point nearest to the plane. Angles count from `hint`. `of_a` tells that the circle
+    /// is A's.
+    fn quarters(&mut self, disc: &Disc, hint: Vector, plane: Vector, of_a: bool) -> [(u32, Vector); 4] {
+        let (u, v) = disc.frame(hint);
         // The distance to the plane along the normal falls this way.
         let sign = if (plane.dot(self.normal) > 0.0) == of_a { 1.0 } else { -1.0 };
         let fall = [u.dot(plane) * sign, v.dot(plane) * sign];
@@ -178,19 +194,10 @@ impl Region {
             count += 1;
         }
         let corners = &corners[..count];
-        let hint = Disc { hint: corners[1 % count] - corners[0], ..*disc };
-        let mut inside = 0;
-        let rise = face.normal.dot(self.normal);
-        for (i, point) in self.quarters(disc, &hint, face.normal, of_a) {
-            let gap = (face.offset - face.normal.dot(point)) / rise;
-            let foot = point + self.normal * gap;
-            if face.contains(corners, foot, self.margin()) {
-                inside += 1;
-                let name = if of_a { OF_A } else { OF_B };
-                let (on_a, gap) = if of_a { (point, gap) } else { (foot, -gap) };
-                self.push(on_a, gap, name | i);
-            }
-        }
+        let (hint, margin) = (corners[1 % count] - corners[0], self.margin());
+        let under = |point: Vector| face.offset - face.normal.dot(point);
+        let contains = |foot: Vector| face.contains(corners, foot, margin);
+        let inside = self.circle_over(disc, hint, of_a, face.normal, under, contains);
         // With all four points inside there may be sides that cut the circle between them, but not deeply.
         if inside < 4 {
             self.disc_and_corners(disc, of_a, corners, if count > 2 { count } else { count - 1 });
@@ -272,13 +279,30 @@ impl Region {
     /// number.
     fn circle_in_disc(&mut self, a: &Disc, b: &Disc, of_a: bool) -> usize {
         let (own, other) = if of_a { (a, b) } else { (b, a) };
-        let (n, rise) = (self.normal, other.normal.dot(self.normal));
         let reach = other.radius + self.margin();
+        let under = |point: Vector| (other.center - point).dot(other.normal);
+        let contains = |foot: Vector| (foot - other.center).length_squared() <= reach * reach;
+        self.circle_over(own, a.hint, of_a, other.normal, under, contains)
+    }
+
+    /// Adds the points of a circle, A's if `of_a`, that are over a part of a plane, and returns their number.
+    /// `under` gives the depth of a point under the plane, `contains` tells whether a point of the plane is in
+    /// the part.
+    fn circle_over(
+        &mut self,
+        disc: &Disc,
+        hint: Vector,
+        of_a: bool,
+        plane: Vector,
+        under: impl Fn(Vector) -> f32,
+        contains: impl Fn(Vector) -> bool,
+    ) -> usize {
+        let rise = plane.dot(self.normal);
         let mut inside = 0;
-        for (i, point) in self.quarters(own, a, other.normal, of_a) {
-            let gap = (other.center - point).dot(other.normal) / rise;
-            let foot = point + n * gap;
-            if (foot - other.center).length_squared() <= reach * reach {
+        for (i, point) in self.quarters(disc, hint, plane, of_a) {
+            let gap = under(point) / rise;
+            let foot = point + self.normal * gap;
+            if contains(foot) {
                 inside += 1;
                 let (on_a, gap) = if of_a { (point, gap) } else { (foot, -gap) };
                 self.push(on_a, gap, if of_a { OF_A } else { OF_B } | i);

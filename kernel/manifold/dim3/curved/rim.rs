@@ -80,7 +80,7 @@ impl Rim {
     ) -> f32 {
         let is_full = out.count == out.points.len();
         let mut allowed = f32::INFINITY;
-        for p in &mut out.points[..out.count] {
+        for p in out.points_mut() {
             if p.separation <= near && (to_shape(p.point) - self.lowest).length() < LAG * self.radius {
                 p.point += from_shape(self.shift);
                 p.separation += self.rise;

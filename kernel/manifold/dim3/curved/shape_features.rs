@@ -3,7 +3,7 @@
 
 use super::super::clip;
 use super::super::gjk::Core;
-use super::super::view::{MatrixPose, View};
+use super::super::view::View;
 use super::patch::{Disc, Face, Patch};
 use crate::math::{Vector, max, min};
 use crate::shape::Curved;
@@ -174,28 +174,4 @@ fn disc(shape: &Curved, end: usize) -> Disc {
 /// The line of the side in a direction across the axis.
 fn side_line(shape: &Curved, around: Vector) -> [Vector; 2] {
     [0, 1].map(|end| around * shape.radius_of(end) + Vector::Y * shape.height_of(end))
-}
-
-/// The part of a frustum at the farthest point that faces a direction of its own frame most, in the outer
-/// frame.
-pub(super) fn facing<'a>(shape: &'a Curved, direction: Vector, frame: &MatrixPose) -> Patch<'a> {
-    moved(shape.facing(direction), frame)
-}
-
-/// An end of a frustum in the outer frame.
-pub(super) fn end(shape: &Curved, end: usize, frame: &MatrixPose) -> Patch<'static> {
-    moved(Patch::Disc(disc(shape, end)), frame)
-}
-
-fn moved<'a>(patch: Patch<'a>, frame: &MatrixPose) -> Patch<'a> {
-    match patch {
-        Patch::Disc(disc) => Patch::Disc(Disc {
-            center: frame.point(disc.center),
-            normal: frame.direction(disc.normal),
-            radius: disc.radius,
-            hint: frame.direction(disc.hint),
-        }),
-        Patch::Line(ends) => Patch::Line(ends.map(|p| frame.point(p))),
-        face @ Patch::Face(_) => face,
-    }
 }

@@ -1,13 +1,53 @@
-//! Two segments with radii: capsules and segments.
-//!
-//! Edge normals do not separate segments on one line, so the closest points are computed first.
+//! Contacts of balls and segments with radii: a ball with a ball or polygon, and two segments.
 
 use super::super::{LocalManifold, PairInput};
-use super::clip::{Facing, Side};
-use super::points::Limits;
-use super::polygonal::{Edge, Polygonal};
+use super::polygonal::{Edge, Facing, Limits, Polygonal, Side, push_between};
 use crate::math::Vector;
 use crate::tuning::manifold::ALIKE;
+
+/// Two balls. The normal of concentric balls is upward.
+pub(super) fn collide_points(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, .. } = input;
+    let (p, q) = (a.vertices[0], pose.transform(b.vertices[0]));
+    out.normal = push_between(p, q, Vector::Y, Limits { radii: [a.radius, b.radius], prediction }, 0, out);
+}
+
+/// A polygon `a` and a ball `b`: the edge with the largest separation of the centre, or one of its ends if
+/// the centre is beyond it.
+pub(super) fn collide_with_point(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+    let PairInput { pose, prediction, .. } = input;
+    let center = pose.transform(b.vertices[0]);
+    let limits = Limits { radii: [a.radius, b.radius], prediction };
+    let reach = prediction + a.radius + b.radius;
+    let mut best = (f32::NEG_INFINITY, 0);
+    for (i, (v, n)) in a.vertices.iter().zip(a.normals).enumerate() {
+        let height = (center - *v).dot(*n);
+        if height > reach {
+            out.gap = height - a.radius - b.radius;
+            return;
+        }
+        if height > best.0 {
+            best = (height, i);
+        }
+    }
+    let (height, i) = best;
+    let (start, end, normal) = (a.vertices[i], a.vertices[a.next(i)], a.normals[i]);
+    // The ends of a segment have no normals, so a centre on its line may still be beyond them.
+    if height > 0.0 || a.len() == 2 {
+        let ends = [start, end];
+        if let Some(i) = nearest_end(ends.map(|end| center - end), end - start) {
+            out.normal = push_between(ends[i], center, normal, limits, 0, out);
+            return;
+        }
+    }
+    let separation = height - a.radius - b.radius;
+    if separation <= prediction {
+        out.normal = normal;
+        out.push(center - normal * (0.5 * (height - a.radius + b.radius)), separation, 0);
+    } else {
+        out.gap = separation;
+    }
+}
 
 /// An end of a segment against the other segment.
 #[derive(Clone, Copy)]
@@ -23,8 +63,9 @@ struct Candidate {
     square: f32,
 }
 
-/// Fills `out` for two segments. Parallel segments side by side get two points.
-pub(super) fn collide(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
+/// Two segments with radii. Parallel segments side by side get two points. Edge normals do not separate
+/// segments on one line, so the closest points are computed first.
+pub(super) fn collide_segments(a: &Polygonal, b: &Polygonal, input: PairInput, out: &mut LocalManifold) {
     let PairInput { pose, prediction, .. } = input;
     let p = [a.vertices[0], a.vertices[1]];
     let q = [pose.transform(b.vertices[0]), pose.transform(b.vertices[1])];
@@ -80,15 +121,22 @@ fn opposite(a: f32, b: f32) -> bool {
 fn candidate(side: Side, own: [Vector; 2], axis: Vector, other: [Vector; 2], end: usize) -> Candidate {
     let from = [other[end] - own[0], other[end] - own[1]];
     let height = from[0].dot(axis.perp());
-    let corner = if from[0].dot(axis) < 0.0 {
+    let corner = nearest_end(from, axis);
+    let square = corner.map_or(height * height, |c| from[c].length_squared());
+    Candidate { side, end, corner, height, square }
+}
+
+/// The end of a segment along `axis` that is nearest to a point beyond it; `None` if the point is beside the
+/// segment. `from` leads from each end to the point.
+#[inline(always)]
+fn nearest_end(from: [Vector; 2], axis: Vector) -> Option<usize> {
+    if from[0].dot(axis) < 0.0 {
         Some(0)
     } else if from[1].dot(axis) > 0.0 {
         Some(1)
     } else {
         None
-    };
-    let square = corner.map_or(height * height, |c| from[c].length_squared());
-    Candidate { side, end, corner, height, square }
+    }
 }
 
 /// The end with the least depth behind the other segment's line.
