@@ -6,7 +6,8 @@ use crate::shape::Hull;
 
 /// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin
 /// is inside.
-pub(super) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
+#[inline(always)]
+pub(super) fn nearest_weights(corners: &[Vector<f64>], _: bool) -> Option<Weights> {
     match *corners {
         [_] => Some([1.0, 0.0, 0.0, 0.0]),
         [a, b] => Some(on_segment(a, b)),

@@ -5,27 +5,33 @@ use crate::math::Vector;
 use crate::shape::{Hull, farthest};
 
 /// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin
-/// is inside.
-pub(super) fn nearest_weights(corners: &[Vector<f64>]) -> Option<Weights> {
+/// is inside. `is_extended`: the last corner was added to a simplex whose nearest point is inside the others.
+#[inline(always)]
+pub(super) fn nearest_weights(corners: &[Vector<f64>], is_extended: bool) -> Option<Weights> {
     match *corners {
         [_] => Some([1.0, 0.0, 0.0, 0.0]),
         [a, b] => Some(on_segment(a, b)),
         [a, b, c] => Some(on_triangle(a, b, c)),
-        [a, b, c, d] => on_tetrahedron([a, b, c, d]),
+        [a, b, c, d] => on_tetrahedron([a, b, c, d], is_extended),
         _ => None,
     }
 }
 
-fn on_tetrahedron(p: [Vector<f64>; 4]) -> Option<Weights> {
-    // Each face, followed by the opposite corner.
-    let faces = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
+fn on_tetrahedron(p: [Vector<f64>; 4], is_extended: bool) -> Option<Weights> {
+    // Each face, followed by the opposite corner. The search adds the last corner towards the origin: the face
+    // without it is not the nearest, unless rounding puts the origin inside of the others.
+    let faces = [[0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0], [0, 1, 2, 3]];
     let mut best: Option<(f64, Weights)> = None;
     for [i, j, k, across] in faces {
+        if across == 3 && is_extended && best.is_some() {
+            break;
+        }
         let normal = (p[j] - p[i]).cross(p[k] - p[i]);
-        let (origin, inside) = (-normal.dot(p[i]), normal.dot(p[across] - p[i]));
+        let height = p[across] - p[i];
+        let (origin, inside) = (-normal.dot(p[i]), normal.dot(height));
         // A flat tetrahedron has no inside, so every face is a candidate.
-        let flat = inside.abs() <= 1.0e-12 * normal.length() * (p[across] - p[i]).length();
-        if origin * inside > 0.0 && !flat {
+        let is_flat = || inside * inside <= 1.0e-24 * normal.length_squared() * height.length_squared();
+        if origin * inside > 0.0 && !is_flat() {
             continue;
         }
         let local = on_triangle(p[i], p[j], p[k]);

@@ -3,6 +3,7 @@
 
 use super::Convex;
 use super::dim::nearest_weights;
+use super::simplex::Weights;
 use crate::math::{DIM, Pose, Rot, Vector};
 
 /// Maximum number of iterations. Polytopes need a few; curved cores gain about a digit every two iterations.
@@ -268,16 +269,15 @@ impl<D: Difference> Search<D> {
             if self.has(&new) || near || gap > accuracy.beyond || self.count > DIM {
                 break;
             }
-            let before = (self.simplex, self.count);
             self.simplex[self.count] = new;
-            let Some((count, point)) = reduced(&mut self.simplex, self.count + 1) else {
-                return Some(touching(&self.simplex[..self.count + 1]));
+            let extended = &self.simplex[..self.count + 1];
+            let Some((weights, point)) = nearest_of(extended, true) else {
+                return Some(touching(extended));
             };
             if !(point.length_squared() < square) {
-                (self.simplex, self.count) = before;
                 break;
             }
-            (self.count, self.nearest) = (count, point);
+            (self.count, self.nearest) = (keep(&mut self.simplex, self.count + 1, &weights), point);
             gap = f64::NEG_INFINITY;
         }
         let distance = self.nearest.length();
@@ -303,18 +303,38 @@ impl<D: Difference> Search<D> {
 /// Reduces the simplex to its face nearest to the origin and returns the face's size and nearest point.
 /// `None` if the origin is inside.
 fn reduced(simplex: &mut [Vertex; DIM + 1], count: usize) -> Option<(usize, Wide)> {
-    let corners = simplex.map(|v| v.w);
-    let weights = nearest_weights(&corners[..count])?;
-    let mut kept = 0;
-    let mut point = Wide::ZERO;
-    for i in 0..count {
-        if weights[i] > 0.0 {
-            simplex[kept] = Vertex { weight: weights[i], ..simplex[i] };
-            point += simplex[kept].w * weights[i];
-            kept += 1;
-        }
+    let (weights, point) = nearest_of(&simplex[..count], false)?;
+    Some((keep(simplex, count, &weights), point))
+}
+
+/// The point of a simplex that is nearest to the origin, and its weights. `None` if the origin is inside.
+/// `is_extended` as in [`nearest_weights`].
+#[inline(always)]
+fn nearest_of(simplex: &[Vertex], is_extended: bool) -> Option<(Weights, Wide)> {
+    let mut corners = [Wide::ZERO; DIM + 1];
+    for (corner, vertex) in corners.iter_mut().zip(simplex) {
+        *corner = vertex.w;
     }
-    Some((kept, point))
+    let weights = nearest_weights(&corners[..simplex.len()], is_extended)?;
+    let mut point = Wide::ZERO;
+    for (vertex, weight) in simplex.iter().zip(weights).filter(|(_, weight)| *weight > 0.0) {
+        point += vertex.w * weight;
+    }
+    Some((weights, point))
+}
+
+/// Keeps the vertices with a weight, and returns their number.
+#[inline(always)]
+fn keep(simplex: &mut [Vertex; DIM + 1], count: usize, weights: &Weights) -> usize {
+    let mut kept = 0;
+    for (i, weight) in weights.iter().enumerate().take(count).filter(|(_, weight)| **weight > 0.0) {
+        if kept < i {
+            simplex[kept] = simplex[i];
+        }
+        simplex[kept].weight = *weight;
+        kept += 1;
+    }
+    kept
 }
 
 fn witness(simplex: &[Vertex]) -> [Wide; 2] {

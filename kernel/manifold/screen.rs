@@ -134,7 +134,8 @@ mod tests {
         let facet = Shape::from(Facet::from(corners));
         let [a, b] = [&facet, shape].map(|shape| Convex::of(shape).expect("convex"));
         let accuracy = Accuracy { tolerance: 1.0e-6, beyond: f64::INFINITY };
-        let cores = closest_cores(&a, &b, &Frame::from(pose), pose.position.widen(), accuracy).expect("finite");
+        let cores =
+            closest_cores(&a, &b, &Frame::from(pose), pose.position.widen(), accuracy).expect("finite");
         (cores.distance as f32 - b.radius).max(0.0)
     }
 
