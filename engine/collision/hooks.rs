@@ -57,7 +57,8 @@ use crate::dynamics::{
 pub trait CollisionHooks: ReadOnlySystemParam + Send + Sync {
     /// Whether two colliders may form a pair. Called when their boxes begin to overlap, if one of the
     /// colliders has [`ActiveCollisionHooks::FILTER_PAIRS`]. After `false` it is called again when one of the
-    /// boxes has moved.
+    /// boxes has moved. Of bodies placed into each other, some pairs wait for their contact; they are asked
+    /// in each step until they get it.
     fn filter_pairs(&self, _collider1: Entity, _collider2: Entity, _commands: &mut Commands) -> bool {
         true
     }

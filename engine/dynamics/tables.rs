@@ -81,7 +81,7 @@ pub(crate) struct Colliders {
     /// The entity of each id.
     pub(crate) entities: Vec<Entity>,
     pub(crate) trees: ProxyTable,
-    /// Colliders whose enlarged box changed since the last search for pairs.
+    /// Colliders whose pairs are searched in the next step: their enlarged boxes changed, or some pair waits.
     pub(crate) moved: BitSet,
     /// Colliders whose pose must be updated before the next search for pairs.
     pub(crate) stale: BitSet,

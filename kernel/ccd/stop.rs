@@ -286,7 +286,8 @@ impl SweepInput<'_> {
     }
 
     /// Whether the embedder lets two colliders pass through each other. A pair whose fat boxes did not
-    /// overlap at the start of the step was not offered to the embedder, and counts as not refused.
+    /// overlap at the start of the step was not offered to the embedder, and counts as not refused. A pair
+    /// that waits in a crowd counts as refused.
     fn is_refused(&self, a: u32, b: u32) -> bool {
         match self.contacts.find(a, b) {
             Some(id) => self.contacts.get(id).is_let_through(),

@@ -9,23 +9,25 @@ use crate::table::{BodyKind, NONE};
 use crate::tuning::contact::DEEP;
 
 impl ContactManager<'_> {
-    /// The pairs, by their indices, that get no contact yet. Bodies in one place come apart by a few contacts
-    /// each; contacts of all pairs, n² / 2, would only take time and memory. Look for these pairs again in the
-    /// next step: they get their contacts when the bodies have come apart, or when other contacts have ended.
+    /// The pairs, by their indices, that get no contact yet. Bodies in one place come apart by a few
+    /// contacts each; contacts of all pairs, n² / 2, would only take time and memory. Look for these pairs
+    /// again in the next step: they get their contacts when the bodies have come apart, or when other
+    /// contacts have ended.
     ///
     /// A collider is full while it has as many deep contacts as there are colours. A deep pair waits while
-    /// either collider is full. Other pairs wait while both are full, or one is and their boxes do not overlap.
-    /// Only solid convex colliders of dynamic bodies wait.
+    /// the larger collider is full. Another pair waits if both colliders have deep contacts, and both are
+    /// full, or one is and their boxes do not overlap. Only solid convex colliders of dynamic bodies wait,
+    /// and no pair of sleeping bodies.
     pub fn left_out(&self, pairs: &[(u32, u32)]) -> BitSet {
         let (mut left_out, mut fills) = (BitSet::default(), Vec::new());
         for (place, &(a, b)) in pairs.iter().enumerate() {
             let pair = [a, b];
-            if let Some(shares) = self.deep_shares(pair) {
-                if pair.iter().any(|id| is_full(*self.fill(*id, &mut fills))) {
-                    left_out.insert(place as u32);
-                } else {
-                    (0..2).for_each(|side| *self.fill(pair[side], &mut fills) += shares[side]);
-                }
+            let Some(shares) = self.deep_shares(pair).filter(|_| self.is_awake_pair(pair)) else { continue };
+            let is_larger = |side: usize| shares[side] <= shares[1 - side];
+            if (0..2).any(|side| is_larger(side) && is_full(*self.fill(pair[side], &mut fills))) {
+                left_out.insert(place as u32);
+            } else {
+                (0..2).for_each(|side| *self.fill(pair[side], &mut fills) += shares[side]);
             }
         }
         if left_out.is_empty() {
@@ -33,17 +35,24 @@ impl ContactManager<'_> {
         }
         for (place, &(a, b)) in pairs.iter().enumerate() {
             let pair = [a, b];
-            if left_out.contains(place as u32) || !self.is_bounded(pair) || self.deep_shares(pair).is_some() {
-                continue;
-            }
-            let [a, b] = pair.map(|id| is_full(*self.fill(id, &mut fills)));
-            let overlap =
-                || self.colliders.tight[pair[0] as usize].overlaps(&self.colliders.tight[pair[1] as usize]);
-            if a && b || (a || b) && !overlap() {
-                left_out.insert(place as u32);
+            if self.is_bounded(pair) && self.is_awake_pair(pair) && self.deep_shares(pair).is_none() {
+                let fills = pair.map(|id| *self.fill(id, &mut fills));
+                let (all, any) = (fills.into_iter().all(is_full), fills.into_iter().any(is_full));
+                if all || any && fills.iter().all(|fill| *fill > 0.0) && !self.do_boxes_overlap(pair) {
+                    left_out.insert(place as u32);
+                }
             }
         }
         left_out
+    }
+
+    fn is_awake_pair(&self, pair: [u32; 2]) -> bool {
+        pair.iter().any(|id| self.is_awake(self.colliders.body(*id)))
+    }
+
+    fn do_boxes_overlap(&self, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|id| &self.colliders.tight[id as usize]);
+        a.overlaps(b)
     }
 
     /// Whether both colliders are solid, convex, and on dynamic bodies.
@@ -57,10 +66,10 @@ impl ContactManager<'_> {
         })
     }
 
-    /// By how much a contact fills each collider, if the [balls within](Shape::core) the shapes overlap deeply:
-    /// by 1 from another of its size or larger, by the ratio of sizes from a smaller one.
+    /// By how much a contact fills each collider, if the [balls within](Shape::core) the shapes overlap
+    /// deeply: by 1 from another of its size or larger, by the ratio of sizes from a smaller one.
     fn deep_shares(&self, pair: [u32; 2]) -> Option<[f32; 2]> {
-        if !self.is_bounded(pair) {
+        if !self.do_boxes_overlap(pair) || !self.is_bounded(pair) {
             return None;
         }
         let [(a, first), (b, second)] = pair.map(|id| {

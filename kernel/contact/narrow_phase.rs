@@ -399,6 +399,8 @@ fn freeze(sides: &Sides, contact: &mut Contact, search: &Search, found: &[LocalM
     contact.flags.set(ContactFlags::FROZEN, is_recyclable && is_kept);
 }
 
+// What follows from an update: the bits of deep overlap and platform, and how long the contact is calm.
+
 /// A contact with any of these bits is updated in each step.
 const LOOKED_AT: ContactFlags = ContactFlags::DEEP
     .union(ContactFlags::COMPOSITE)

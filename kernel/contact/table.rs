@@ -126,7 +126,7 @@ impl ContactTable {
         self.active.iter()
     }
 
-    /// The number of contacts with an awake body.
+    /// The number of contacts with an awake body; O(capacity).
     pub fn active_len(&self) -> usize {
         self.active.count()
     }

@@ -5,7 +5,7 @@ use crate::math::Vector;
 use crate::shape::{Hull, farthest};
 
 /// The weights of the corners of the point of a simplex that is nearest to the origin. `None` if the origin
-/// is inside. `is_extended`: the last corner was added to a simplex whose nearest point is inside the others.
+/// is inside. `is_extended`: the last corner was added, towards the origin, to corners that all had a weight.
 #[inline(always)]
 pub(super) fn nearest_weights(corners: &[Vector<f64>], is_extended: bool) -> Option<Weights> {
     match *corners {
@@ -18,8 +18,8 @@ pub(super) fn nearest_weights(corners: &[Vector<f64>], is_extended: bool) -> Opt
 }
 
 fn on_tetrahedron(p: [Vector<f64>; 4], is_extended: bool) -> Option<Weights> {
-    // Each face, followed by the opposite corner. The search adds the last corner towards the origin: the face
-    // without it is not the nearest, unless rounding puts the origin inside of the others.
+    // Each face, followed by the opposite corner. The search adds the last corner towards the origin: the
+    // face without it is not the nearest, unless rounding puts the origin inside of the others.
     let faces = [[0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0], [0, 1, 2, 3]];
     let mut best: Option<(f64, Weights)> = None;
     for [i, j, k, across] in faces {

@@ -135,7 +135,7 @@ mod tests {
         let [a, b] = [&facet, shape].map(|shape| Convex::of(shape).expect("convex"));
         let accuracy = Accuracy { tolerance: 1.0e-6, beyond: f64::INFINITY };
         let cores =
-            closest_cores(&a, &b, &Frame::from(pose), pose.position.widen(), accuracy).expect("finite");
+            closest_cores(&a, &b, &Frame::from(pose), Vector::ZERO.widen(), accuracy).expect("finite");
         (cores.distance as f32 - b.radius).max(0.0)
     }
 

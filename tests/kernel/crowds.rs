@@ -66,8 +66,8 @@ fn bodies_in_one_place_come_apart_gently() {
     }
 }
 
-/// Balls in one place leave it in all directions, with a bounded number of contacts, and no pair that touches
-/// is forgotten.
+/// Balls in one place leave it in all directions, with a bounded number of contacts, and no deep pair is
+/// forgotten.
 fn spread(radius: impl Fn(usize) -> f32) {
     let mut sim = Sim::new();
     (sim.gravity, sim.checked, sim.sleeping) = (Vector::ZERO, false, false);
@@ -115,6 +115,40 @@ fn small_bodies_inside_a_large_one_leave_room_for_another() {
     sim.steps(600);
     let gap = (sim.position(crowd) - sim.position(rock)).to_local().length() - 0.9;
     assert!(gap > -0.02, "they overlap by {gap} m");
+}
+
+#[test]
+fn a_crowd_hits_what_stands_before_it_and_what_stands_in_it() {
+    let mut sim = Sim::new();
+    (sim.gravity, sim.sleeping) = (Vector::ZERO, false);
+    let pellets: Vec<u32> = (0..40).map(|i| sim.ball(0.1, Vector::Y * (0.001 * i as f32))).collect();
+    for id in &pellets {
+        sim.bodies.velocities[*id as usize].linear = Vector::X * 60.0;
+    }
+    let before = sim.cuboid(Vector::ONE * 0.5, Vector::X * 1.2);
+    let around = sim.cuboid(Vector::ONE * 0.5, Vector::X * -0.3);
+    let mut met = [0; 2];
+    for _ in 0..3 {
+        sim.step();
+        let has_met = [before, around]
+            .map(|id| pellets.iter().filter(|p| sim.contacts.find(id, **p).is_some()).count());
+        met = [met[0].max(has_met[0]), met[1].max(has_met[1])];
+    }
+    assert_eq!(met, [40, 40], "pellets that met the crate before them, and the one around them");
+}
+
+#[test]
+fn a_crowd_that_sleeps_has_all_contacts_and_is_not_searched_again() {
+    let mut sim = Sim::new();
+    sim.gravity = Vector::ZERO;
+    let ids: Vec<u32> = (0..50).map(|_| sim.ball(0.25, Vector::ZERO)).collect();
+    for id in &ids {
+        let mut manager = sim.contact_manager();
+        let island = manager.island_of(*id).expect("it is dynamic");
+        manager.sleep_island(island);
+    }
+    sim.step();
+    assert_eq!(sim.contacts.len(), 50 * 49 / 2);
 }
 
 #[test]

@@ -14,7 +14,7 @@ pub const GOLDEN: [(&str, u64, u64); 18] = [
     ("slopes", 0x9ce56aa15f282302, 0x92fc75e3881edcb4),
     ("composites", 0x808ce203b7923fbc, 0xdedf11a27d34cc2f),
     ("bounces", 0x8eb9224e06cc1647, 0x65b756a55857f3c2),
-    ("crowd", 0x7a8781c83fbb54f3, 0x61e225bf4b7882cb),
+    ("crowd", 0x97772030754c313e, 0xc57013057ba7db7c),
     ("sleepers", 0x8123a61c2e1f4724, 0xf84338b02e8ee25c),
     ("held", 0x4f2f5900cbeae18b, 0x9211a8b47476462a),
     ("dominance", 0x963d5fedb83bb4fa, 0x389c9733172a67d4),

@@ -14,7 +14,7 @@ pub const GOLDEN: [(&str, u64, u64); 18] = [
     ("slopes", 0x55f726aa762cc626, 0xb09a5330719137a1),
     ("composites", 0xa2845e4a73d3d709, 0xb7765966d46d3862),
     ("bounces", 0x05c839afa3ec9580, 0xa0f79f02324f3581),
-    ("crowd", 0x93c2a776872f40e0, 0xef91a83a533a0ccb),
+    ("crowd", 0x256c271b919aa475, 0xb094b90a71ccf822),
     ("sleepers", 0x0bb7d60363846a8f, 0x1e1e4adc8b7f808a),
     ("held", 0xaa7e160275ee8b7a, 0xfb1a0edadd0c0caa),
     ("dominance", 0x6abbcdca593ba668, 0x36982e2a7a62b82e),

@@ -285,9 +285,9 @@ impl Region {
         self.circle_over(own, a.hint, of_a, other.normal, under, contains)
     }
 
-    /// Adds the points of a circle, A's if `of_a`, that are over a part of a plane, and returns their number.
-    /// `under` gives the depth of a point under the plane, `contains` tells whether a point of the plane is in
-    /// the part.
+    /// Adds the points of a circle, A's if `of_a`, that are over a part of a plane, and returns their
+    /// number. `under` gives the depth of a point under the plane, `contains` tells whether a point of the
+    /// plane is in the part.
     fn circle_over(
         &mut self,
         disc: &Disc,
