@@ -11,7 +11,7 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("card_house", 0xf4350c1cdf4b5132),
     ("towers", 0x44b616d850022b49),
     ("smash", 0x46c219e2ea1b022c),
-    ("crowd", 0x33adc43514803b4c),
+    ("crowd", 0xb9450924ceec97bf),
     ("sleepers", 0xa5173c407dda63eb),
     ("bounces", 0xb55dfc91c80d7964),
     ("settings", 0xad4d7de2bc82c7bf),

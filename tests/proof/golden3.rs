@@ -11,7 +11,7 @@ pub const NATIVE: [(&str, u64); 11] = [
     ("card_house", 0x15a5ba7543678eac),
     ("towers", 0x4a66ad8c890eac3c),
     ("smash", 0xfd9230a6d29175a2),
-    ("crowd", 0xdd2090397d611373),
+    ("crowd", 0xb702be00d3d94b35),
     ("sleepers", 0xf9dc327a40fcb339),
     ("bounces", 0xccb55e1a4906b501),
     ("settings", 0x9bc46dfe96d8fb35),
