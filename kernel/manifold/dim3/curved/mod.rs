@@ -440,7 +440,8 @@ impl<'a, A: ShapeFeatures> Pair<'a, A> {
     fn refine(&self, start: &Found) -> Found {
         let apart = DEEP * self.sizes.smaller;
         if !self.surely_overlaps(start)
-            && let Some(c) = gjk::closest_within(self.a, self.b, &self.b_in_a, start.normal, f32::INFINITY)
+            && let Some(c) =
+                gjk::closest_within(self.a, self.b, &self.b_in_a, start.normal, self.sizes.limit())
             && c.distance > self.sizes.resolution()
         {
             return self.line(c.normal, Some([c.a, c.b]));
