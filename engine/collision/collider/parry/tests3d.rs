@@ -255,3 +255,25 @@ fn constructors_of_space_return_errors() {
     assert!(Collider::try_heightfield(heights(), Vector::ONE).is_ok());
     assert!(Collider::try_voxelized_trimesh(&corners, &faces, 0.1, mode).is_ok());
 }
+
+/// An open floor with a low step has a volume of about zero, by which its centre of mass is divided.
+#[test]
+fn open_meshes_have_their_centre_of_mass_in_their_box() {
+    for (cells, height) in [(4, 0.0), (4, 0.001), (13, 0.001), (16, 0.005), (48, 0.005), (48, 1.0)] {
+        let corner = |i: u32, j: u32| {
+            let x = 24.0 * i as Scalar / cells as Scalar - 12.0;
+            Vector::new(x, if x < 0.0 { 0.0 } else { height }, 8.0 * j as Scalar / cells as Scalar)
+        };
+        let side = 0..=cells;
+        let vertices = side.clone().flat_map(|i| side.clone().map(move |j| corner(i, j))).collect();
+        let squares = (0..cells).flat_map(|i| (0..cells).map(move |j| i * (cells + 1) + j));
+        let indices =
+            squares.flat_map(|p| [[p, p + 1, p + cells + 2], [p, p + cells + 2, p + cells + 1]]).collect();
+        let mesh = Collider::trimesh(vertices, indices);
+        let center = mesh.center_of_mass();
+        let is_in_box = center.x.abs() <= 12.1 && center.y.abs() <= 1.1 && (center.z - 4.0).abs() <= 4.1;
+        let p = mesh.mass_properties(1.0);
+        let is_finite = p.mass >= 0.0 && p.mass.is_finite() && p.principal_angular_inertia.is_finite();
+        assert!(is_in_box && is_finite, "{cells} by {cells} cells, {height} m: {center}, {p:?}");
+    }
+}

@@ -6,6 +6,8 @@ use super::super::dim::cuboid_shape;
 use super::super::input::{MIN_LENGTH, checked};
 use super::super::params::{FillMode, VhacdParameters};
 use crate::math::{AsF32, Scalar, Vector};
+use crate::parry::bounding_volume::BoundingVolume;
+use crate::parry::mass_properties::MassProperties;
 use crate::parry::shape::SharedShape;
 use crate::parry::utils::Array2;
 use bevy_heavy::{ComputeMassProperties3d, MassProperties3d};
@@ -50,9 +52,16 @@ fn native_mass_properties(shape: &NativeShape) -> MassProperties3d {
     MassProperties3d::new_with_angular_inertia_tensor(p.mass, tensor, center)
 }
 
-/// The mass properties by parry, corrected for inward triangles, which have a negative volume in parry.
+/// The mass properties by parry, corrected for inward triangles, which have a negative volume in parry. A mesh
+/// that is not closed has no volume: if its centre of mass comes to be outside of its box, it counts as a
+/// shape that fills the box.
 fn foreign_mass_properties(shape: &SharedShape) -> MassProperties3d {
-    let properties = shape.mass_properties(1.0);
+    let bounds = shape.compute_local_aabb();
+    let mut properties = shape.mass_properties(1.0);
+    if !bounds.loosened(0.01 * bounds.half_extents().length()).contains_local_point(properties.local_com) {
+        properties = MassProperties::from_cuboid(1.0, bounds.half_extents());
+        properties.local_com = bounds.center();
+    }
     let mass = (properties.mass() as f32).abs();
     let inertia = properties.principal_inertia().f32().abs();
     let frame = properties.principal_inertia_local_frame.f32();
