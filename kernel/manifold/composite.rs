@@ -186,6 +186,10 @@ fn collide_both(
     })
 }
 
+/// The number of points of a manifold at which they are reduced, as many as [`few_points`] takes. Twins are
+/// searched among so many only, so that the time grows evenly with the number of parts.
+const MANY_POINTS: usize = 64;
+
 /// Buffers for [`merge`], kept between calls.
 #[derive(Clone, Debug, Default)]
 struct Merging {
@@ -226,6 +230,15 @@ fn merge(found: &mut [LocalManifold], room: &mut Merging, out: &mut Vec<LocalMan
         }
         points.clear();
         for (m, _) in found.iter().zip(groups.iter()).filter(|(_, g)| **g == group) {
+            if points.len() + m.points().len() > MANY_POINTS {
+                drop_twins(points);
+                // The outermost points so far stay: a slab on hundreds of tiles stands on its corners.
+                if points.len() > MANY_POINTS * 3 / 4 {
+                    few_points(points, merged);
+                    points.clear();
+                    points.extend_from_slice(merged.points());
+                }
+            }
             points.extend_from_slice(m.points());
         }
         drop_twins(points);
