@@ -9,7 +9,11 @@ use crate::distance::{Approach, advance};
 use crate::manifold::{self, CompositeBuffers, FeatureCache, LocalManifold, ManifoldQuery};
 use crate::math::{Pose, Vector, WorldPose, max, min};
 use crate::shape::{Ball, Shape};
-use crate::tuning::sweeps::{MET, ROUNDS, VIEW};
+use crate::tuning::sweeps::{CORE_SHARE, MET, ROUNDS, VIEW};
+
+/// The radii of the balls that are cast if the shapes touch already, as shares of the largest ball within the
+/// shape. The first ball that does not touch at the start of the step decides.
+const BALLS: [f32; 3] = [CORE_SHARE, MET, 0.0];
 
 /// A collider that takes part in a cast.
 #[derive(Clone, Copy, Debug)]
@@ -29,9 +33,14 @@ impl Side<'_> {
         self.path.frame(fraction).then(&self.local)
     }
 
-    /// Maximum distance that rotation moves the surface along its normals.
-    fn turning(&self) -> f32 {
-        self.arm * self.path.spin.length()
+    /// The distance from a point of the shape to the centre of mass.
+    fn arm_of(&self, point: Vector) -> f32 {
+        (self.local.transform(point) - self.path.local_center).length()
+    }
+
+    /// Maximum distance that rotation moves the surface along its normals, or a point with this arm.
+    fn turning(&self, arm: f32) -> f32 {
+        arm * self.path.spin.length()
     }
 }
 
@@ -72,6 +81,7 @@ pub(super) struct CastBuffers {
 }
 
 /// Two colliders, one cast against the other.
+#[derive(Clone, Copy)]
 pub(super) struct Pair<'a> {
     pub(super) source: &'a dyn ManifoldSource,
     pub(super) moving: Side<'a>,
@@ -89,11 +99,12 @@ impl Pair<'_> {
     pub(super) fn cast(&self, caster: Caster, buffers: &mut CastBuffers) -> Cast {
         // A ball touches only at a smaller distance than it stops at, so a ball that stopped is not free to
         // go on in the next step.
-        let (way, turning, touching) = match caster {
-            Caster::Whole => (self.moving.path.way, self.moving.turning(), self.target),
-            Caster::Ball(center, _) => (self.chord(center), 0.0, MET * self.target),
+        let (arm, touching) = match caster {
+            Caster::Whole => (self.moving.arm, self.target),
+            Caster::Ball(center, _) => (self.moving.arm_of(center), MET * self.target),
         };
-        let (way, turning) = (way - self.other.path.way, turning + self.other.turning());
+        let way = self.moving.path.way - self.other.path.way;
+        let turning = self.moving.turning(arm) + self.other.turning(self.other.arm);
         let fastest = way.length() + turning;
         if !(fastest > 0.0) {
             return Cast::Miss;
@@ -133,10 +144,18 @@ impl Pair<'_> {
         cast.unwrap_or(Cast::Miss)
     }
 
-    /// The displacement of a point of the moving shape over the step.
-    fn chord(&self, point: Vector) -> Vector {
-        let [start, end] = [0.0, 1.0].map(|fraction| self.moving.pose(fraction).transform(point));
-        (end - start).to_local()
+    /// The fraction of the step at which a ball within the moving shape meets the other shape; 1 if it does
+    /// not meet it.
+    pub(super) fn pass(&self, center: Vector, core: f32, buffers: &mut CastBuffers) -> f32 {
+        let pair = Self { margin: 0.0, ..*self };
+        for share in BALLS {
+            match pair.cast(Caster::Ball(center, share * core), buffers) {
+                Cast::Touching => {}
+                Cast::Miss => return 1.0,
+                Cast::Hit(fraction) => return fraction,
+            }
+        }
+        1.0
     }
 
     /// Finds the manifolds after a fraction of the step, up to the distance that the remaining motion may
@@ -163,10 +182,8 @@ impl Pair<'_> {
         let (shape, pose) = match caster {
             Caster::Whole => (b.shape, b.pose(fraction)),
             Caster::Ball(center, radius) => {
-                let mut position = b.pose(0.0).transform(center);
-                position += (self.chord(center) * fraction).to_world();
                 ball = Shape::Ball(Ball { radius });
-                (&ball, WorldPose { position, rotation: other.rotation })
+                (&ball, WorldPose { position: b.pose(fraction).transform(center), rotation: other.rotation })
             }
         };
         let pose = other.relative(&pose);

@@ -10,10 +10,6 @@ use crate::shape::Aabb;
 use crate::table::{BodyKind, BodyPose, BodyTable, ColliderTable, NONE, Reach};
 use crate::tuning::sweeps::{CORE_SHARE, MET};
 
-/// The radii of the balls that are cast if the shapes touch already, as shares of the largest ball within the
-/// shape. The first ball that does not touch at the start of the step decides.
-const BALLS: [f32; 3] = [CORE_SHARE, MET, 0.0];
-
 /// The trees of the colliders that do not move.
 const FIXED: [TreeKind; 2] = [TreeKind::Static, TreeKind::Standalone];
 
@@ -364,7 +360,7 @@ impl SweepInput<'_> {
         let (center, core) = moving.shape.core();
         let reaches = [collider, other.collider].map(|id| self.colliders.reaches[id as usize]);
         let size = if core > 0.0 { min(core, self.tolerance) } else { self.tolerance };
-        let mut pair = Pair {
+        let pair = Pair {
             source: self.source,
             moving,
             other,
@@ -373,31 +369,35 @@ impl SweepInput<'_> {
             extent: reaches[0].extent,
         };
         let allowed = self.allowed_overlap(collider, sweep);
-        if pair.depth_at_end(buffers) > allowed {
-            // A shape that touches already, such as a rod that falls over on its foot, moves on to the
-            // allowed overlap. If it stopped at the first touch, it would hang there for many steps and gain
-            // the speed of all of them. A shape that overlaps more moves on slowly.
-            let gap = pair.gap_at_start(self.tolerance, buffers);
-            if gap < self.tolerance {
-                let deeper = 0.5 * allowed - gap;
-                pair.margin -= min(max(allowed, deeper), CORE_SHARE * core);
-            }
-            if let Cast::Hit(fraction) = pair.cast(Caster::Whole, buffers) {
-                return fraction;
-            }
+        let is_deep = pair.depth_at_end(buffers) > allowed;
+        if is_deep && let Some(fraction) = self.overlap(&pair, allowed, core, buffers) {
+            return fraction;
         }
         // A touching shape may slide, roll, and run over the seams of a floor, but it must not pass through.
         if !sweep.is_fast {
             return 1.0;
         }
-        pair.margin = 0.0;
-        for share in BALLS {
-            match pair.cast(Caster::Ball(center, share * core), buffers) {
-                Cast::Touching => {}
-                Cast::Miss => return 1.0,
-                Cast::Hit(fraction) => return fraction,
-            }
+        let passed = pair.pass(center, core, buffers);
+        // The end of a long shape may be far inside when the ball within it arrives.
+        let first = (passed < 1.0 && !is_deep).then(|| self.overlap(&pair, allowed, core, buffers)).flatten();
+        min(first.unwrap_or(1.0), passed)
+    }
+
+    /// The fraction of the step at which the shapes of a pair overlap by `allowed`, or touch if they were
+    /// apart; `None` if they overlap more from the start.
+    fn overlap(&self, pair: &Pair, allowed: f32, core: f32, buffers: &mut CastBuffers) -> Option<f32> {
+        let mut pair = *pair;
+        // A shape that touches already, such as a rod that falls over on its foot, moves on to the
+        // allowed overlap. If it stopped at the first touch, it would hang there for many steps and gain
+        // the speed of all of them. A shape that overlaps more moves on slowly.
+        let gap = pair.gap_at_start(self.tolerance, buffers);
+        if gap < self.tolerance {
+            let deeper = 0.5 * allowed - gap;
+            pair.margin -= min(max(allowed, deeper), CORE_SHARE * core);
         }
-        1.0
+        match pair.cast(Caster::Whole, buffers) {
+            Cast::Hit(fraction) => Some(fraction),
+            Cast::Miss | Cast::Touching => None,
+        }
     }
 }
