@@ -80,7 +80,8 @@ impl ContactManager<'_> {
         if let Some(islands) = &mut self.islands {
             islands.drain_woken(|body| self.bodies[body].sleep_timer = 0.0);
         }
-        if core::mem::take(&mut self.contacts.gives_back) {
+        self.contacts.count_step();
+        if self.contacts.gives_back {
             self.colors.shrink();
             self.islands.iter_mut().for_each(|islands| islands.shrink());
         }

@@ -53,7 +53,11 @@ pub struct ContactTable {
     pub(super) load_points: Vec<LoadPoint>,
     /// The number of contacts, step by step.
     slack: Slack,
-    /// Whether buffers are given back in this step.
+    /// One more than the highest id in use, step by step.
+    span: Slack,
+    /// Whether storage behind the last contact is given back when ids are next recycled.
+    is_cut: bool,
+    /// Whether lists and buffers of contacts are given back, from the end of an update to that of the next.
     pub(super) gives_back: bool,
 }
 
@@ -221,18 +225,26 @@ impl ContactTable {
     /// a past crowd needed.
     pub fn recycle_ids(&mut self) {
         self.ids.recycle();
-        self.gives_back = self.slack.is_due(self.len());
-        if self.gives_back {
+        if core::mem::take(&mut self.is_cut) {
             self.ids.trim();
             let capacity = self.ids.capacity();
             cut(&mut self.contacts, capacity);
             cut(&mut self.points, capacity);
             cut(&mut self.bodies, capacity);
             self.active.truncate(capacity);
-            self.pairs.shrink();
             for slot in &self.free_extra {
                 self.extra[*slot as usize] = Vec::new();
             }
+        }
+    }
+
+    /// Counts a step, and decides what to give back. Contacts keep their ids, so the table is cut later than
+    /// lists, when the highest ids are free.
+    pub(super) fn count_step(&mut self) {
+        self.is_cut |= self.span.is_due(self.ids.span());
+        self.gives_back = self.slack.is_due(self.len());
+        if self.gives_back {
+            self.pairs.shrink();
         }
     }
 

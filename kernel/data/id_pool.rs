@@ -112,7 +112,7 @@ impl IdPool {
         if !self.pending.is_empty() {
             return;
         }
-        self.capacity = self.live.last().map_or(0, |last| last + 1);
+        self.capacity = self.span() as u32;
         let capacity = self.capacity as usize;
         [&mut self.live, &mut self.aside].into_iter().for_each(|ids| ids.truncate(capacity));
         for free in &mut self.free {
@@ -121,6 +121,11 @@ impl IdPool {
             free.lowest = free.lowest.min(self.capacity);
         }
         self.pending.shrink_to_fit();
+    }
+
+    /// One more than the highest id in use.
+    pub fn span(&self) -> usize {
+        self.live.last().map_or(0, |last| last as usize + 1)
     }
 
     /// Whether the id is in use.

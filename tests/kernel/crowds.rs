@@ -173,6 +173,25 @@ fn the_memory_of_a_crowd_is_given_back() {
     assert!(speed(&sim, kept) < 0.5 && sim.contacts.len() >= 2, "contacts are made anew");
 }
 
+/// Whatever keeps contacts, rows and pairs of a crowd gives them back while its bodies live on apart.
+#[test]
+fn the_memory_of_a_crowd_is_given_back_within_half_a_second() {
+    let mut sim = Sim::new();
+    sim.checked = false;
+    sim.gravity = Vector::ZERO;
+    let ids: Vec<u32> = (0..1000).map(|_| sim.ball(0.25, Vector::Y * 2.0)).collect();
+    sim.steps(5);
+    let crowded = sim.contacts.capacity();
+    assert!(crowded > 400 * COLOR_COUNT, "{crowded} contacts of 1,000 balls in one place");
+    for (i, id) in ids.iter().enumerate() {
+        sim.remove(*id);
+        sim.ball(0.25, Vector::X * i as f32);
+    }
+    sim.steps(30);
+    let left = sim.contacts.capacity();
+    assert!(left < crowded / 100, "places of {left} contacts are left of {crowded}");
+}
+
 #[test]
 fn bodies_in_one_place_on_a_floor_come_to_rest_near_it() {
     let mut sim = Sim::new();
