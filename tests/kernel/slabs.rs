@@ -78,25 +78,6 @@ fn a_slab_on_a_compound_of_many_tiles_stands_on_its_corners() {
     }
 }
 
-#[test]
-fn a_slab_on_a_compound_takes_a_time_in_proportion_to_its_tiles() {
-    for speed in [0.0, 10.0] {
-        let mut least = [Duration::MAX; 2];
-        let mut slabs = [1000, 4000].map(|tiles| on_tiles(tiles, speed, true));
-        slabs.iter_mut().for_each(|sim| sim.steps(12));
-        for _ in 0..6 {
-            for (sim, least) in slabs.iter_mut().zip(&mut least) {
-                let start = Instant::now();
-                sim.steps(6);
-                *least = start.elapsed().min(*least);
-            }
-        }
-        let [few, many] = least.map(|time| time.as_secs_f64());
-        println!("{DIM}D, {speed} m/s: {few} {many}");
-        assert!(many < 8.0 * few, "it takes {} times as long", many / few);
-    }
-}
-
 /// Each box of a column strikes the one below in a round of its own.
 #[test]
 fn the_step_in_which_columns_land_takes_some_times_as_long_as_one_at_rest() {
