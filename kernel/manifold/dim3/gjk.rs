@@ -89,8 +89,7 @@ struct Pair<'a, A, B> {
 impl<A: Core, B: Core> Difference for Pair<'_, A, B> {
     // Vertices are rounded to `f32`.
     const TOUCHING: f64 = 3.2e-7;
-    // Normals are off by the root of twice this, 0.3 %.
-    const RELATIVE: f64 = 5.0e-6;
+    const RELATIVE: f64 = 1.0e-6;
 
     #[inline(always)]
     fn vertex(&self, direction: Vector<f64>) -> Vertex {
