@@ -186,8 +186,7 @@ fn collide_both(
     })
 }
 
-/// The number of points of a manifold at which they are reduced, as many as [`few_points`] takes. Twins are
-/// searched among so many only, so that the time grows evenly with the number of parts.
+/// The maximum number of points that [`few_points`] takes. A manifold with more is reduced several times.
 const MANY_POINTS: usize = 64;
 
 /// Buffers for [`merge`], kept between calls.
